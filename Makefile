@@ -1,0 +1,30 @@
+# Two commands on a fresh machine: `make train` and `make test`. Each sets up .venv by itself.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+CONFIG ?= configs/leas_p1.yaml
+RUN_DIR ?= runs/leas_p1
+# The seven dependencies of the test tools are not needed to train: two locked lists, two stamps.
+RUN_STAMP := $(VENV)/.run-installed
+DEV_STAMP := $(VENV)/.dev-installed
+
+.PHONY: train test test-all lint bench lock clean
+
+train: $(RUN_STAMP)
+	$(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR)
+
+test: $(DEV_STAMP)
+	$(BIN)/python -m pytest
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(RUN_STAMP): requirements/run.txt pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet -r requirements/run.txt
+	$(BIN)/python -m pip install --quiet --no-deps --editable .
+	touch $@
+
+$(DEV_STAMP): requirements/dev.txt pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet -r requirements/dev.txt
+	$(BIN)/python -m pip install --quiet --no-deps --editable .
+	touch $@ $(RUN_STAMP)

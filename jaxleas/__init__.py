@@ -1,0 +1,1 @@
+"""Steering policies that know what their contact planner can do."""

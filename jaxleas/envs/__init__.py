@@ -1,0 +1,1 @@
+"""Environments: each room has its state, observation, reward, termination and step."""

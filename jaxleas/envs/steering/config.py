@@ -1,0 +1,62 @@
+"""The constants of the steering task (T table 3.1)."""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jaxleas.types.strict import Strict
+
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+
+
+class MotionLimits(Strict):
+    """What the root may do in one time step (T sec. 3.2.3)."""
+
+    time_step: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
+    """Time between two configurations of the guide path, T [s]."""
+    max_speed: Positive = 0.2
+    """Bound on the norm of the velocity, v_max [m/s]."""
+    max_acceleration: Positive = 0.08
+    """Bound on the norm of the acceleration, a_max [m/s^2]."""
+    max_turn_rate: Positive = math.pi / 9
+    """Bound on the turn rate, omega_max [rad/s]."""
+
+
+class RewardWeights(Strict):
+    """Weights of the reward's five terms (T sec. 3.2.4)."""
+
+    direction: NonNegative = 2.0
+    """w_dir. The thesis has 1.0; 2.0 makes crossing pay clearly more than standing still."""
+    orientation: NonNegative = 0.4
+    """w_ori."""
+    turn: NonNegative = 0.1
+    """w_omega, on the squared turn rate."""
+    acceleration: NonNegative = 0.1
+    """w_acc, on the squared acceleration."""
+    alive: NonNegative = 1.0
+    """w_alive, for every valid configuration."""
+
+
+class SteeringConfig(Strict):
+    """The steering environment."""
+
+    robot: str = "talos"
+    """Name of the robot."""
+    observation: Literal["thesis144", "icra81"] = "thesis144"
+    """Layout of the local height map: 10 x 14 (T table 3.1) or 11 x 7 (I sec. III)."""
+    height_low: float = -1.4
+    """Heights are clipped from below here, z_min [m] relative to the root."""
+    height_high: float = -0.2
+    """Heights are clipped from above here, z_max [m] relative to the root."""
+    desired_speed: Positive = 0.1
+    """Speed at which the root should move towards the goal, v_desired [m/s]."""
+    goal_radius: Positive = 0.2
+    """The goal is reached within this distance [m] (T sec. 3.4.2)."""
+    episode_steps: Annotated[int, Field(ge=1)] = 400
+    """An episode is cut here [steps]. The thesis has 800: most of it is standing at dead ends."""
+    goal_steps: tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]] = (200, 800)
+    """A goal lasts a random number of steps in this range, or until it is reached."""
+    limits: MotionLimits = MotionLimits()
+    reward: RewardWeights = RewardWeights()

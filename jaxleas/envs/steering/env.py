@@ -1,0 +1,146 @@
+"""LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Float, Int
+
+from jaxleas.conditions import Condition, all_of, collision, footprint_points, strict_reachability
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
+from jaxleas.envs.steering.motion import integrate, scale_action
+from jaxleas.envs.steering.observation import direction_to_goal, local_heights, observe
+from jaxleas.envs.steering.reward import RewardParams, reward
+from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState
+from jaxleas.robots import load_robot
+from jaxleas.terrain.atlas import Atlas
+from jaxleas.types import RootMotion
+
+
+class SteeringEnv:
+    """The steering task for one configuration; holds constants only, every method is pure.
+
+    The local terrain of a robot is the heights at `points_in_root`: first the observation's grid,
+    then the footprint, a finer grid in the trunk's shadow that the conditions need and the policy
+    does not see.
+
+    Attributes:
+        config: of the task.
+        layout: of the observation.
+        robot: that walks.
+        points_in_root: where the local terrain is sampled [m].
+        condition: on local terrain and motion; an episode ends where it fails.
+    """
+
+    action_size = ACTION_SIZE
+
+    def __init__(self, config: SteeringConfig, condition: Condition | None = None):
+        """Prepare the task.
+
+        Args:
+            config: of the task.
+            condition: that ends an episode; by default strict reachability and collision of the
+                robot (R* and C, T 3.3.1).
+        """
+        self.config = config
+        self.layout = layout_named(config.observation)
+        self.robot = load_robot(config.robot)
+        self.height_range = (config.height_low, config.height_high)
+        self.points_in_root = np.concatenate(
+            [self.layout.points_in_root, footprint_points(self.robot)]
+        )
+        self.condition = condition or all_of(
+            strict_reachability(self.robot, self.points_in_root),
+            collision(self.robot, self.points_in_root),
+        )
+
+    def local_heights(
+        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
+    ) -> Float[Array, "*batch points"]:
+        """Return the local terrain: heights at `points_in_root` relative to the root [m]."""
+        return local_heights(atlas, map_index, motion, self.points_in_root)
+
+    def observe(
+        self,
+        heights_in_root: Float[Array, "*batch points"],
+        motion: RootMotion,
+        goal: Float[Array, "*batch 2"],
+    ) -> Float[Array, "*batch size"]:
+        """Return the observation of a robot that seeks `goal` on this local terrain."""
+        seen = heights_in_root[..., : len(self.layout.points_in_root)]
+        return observe(seen, motion, goal, self.height_range)
+
+    def start(self, motion: RootMotion, plan: Plan) -> SteeringState:
+        """Return the state at the beginning of an episode."""
+        zero = jnp.zeros_like(plan.map_index)
+        return SteeringState(motion=motion, plan=plan, goal_index=zero, goal_age=zero, step=zero)
+
+    def goal(self, state: SteeringState) -> Float[Array, "*batch 2"]:
+        """Return the goal that is sought now [m]."""
+        return _pick(state.plan.goals, state.goal_index)
+
+    def step(
+        self,
+        atlas: Atlas,
+        params: RewardParams,
+        state: SteeringState,
+        action: Float[Array, "*batch 4"],
+    ) -> tuple[SteeringState, Outcome]:
+        """Advance one time step (T eq. 3.3), judge the configuration and reward it.
+
+        Args:
+            atlas: terrains.
+            params: weights of the reward.
+            state: of the episode.
+            action: the network's, in [-1, 1]^4.
+        """
+        config = self.config
+        command = scale_action(action, config.limits)
+        motion = integrate(state.motion, command, config.limits)
+        heights = self.local_heights(atlas, state.plan.map_index, motion)
+        margin = self.condition(heights, motion)
+        valid = margin >= 0.0
+
+        toward, distance = direction_to_goal(motion, self.goal(state))
+        reached = distance <= config.goal_radius
+        gained = reward(
+            params, config, motion, command, toward, valid.astype(heights.dtype)
+        )
+
+        age = state.goal_age + 1
+        replaced = reached | (age >= _pick(state.plan.goal_steps, state.goal_index))
+        after = SteeringState(
+            motion=motion,
+            plan=state.plan,
+            goal_index=jnp.minimum(state.goal_index + replaced, GOALS - 1),
+            goal_age=jnp.where(replaced, 0, age),
+            step=state.step + 1,
+        )
+        return after, Outcome(
+            observation=self.observe(heights, motion, self.goal(after)),
+            reward=gained,
+            terminated=~valid,
+            truncated=valid & (after.step >= config.episode_steps),
+            margin=margin,
+            reached=reached & valid,
+        )
+
+
+def _pick(values: Array, index: Int[Array, "*batch"]) -> Array:
+    """Return entry `index` along the goals' axis (the first after the batch axes)."""
+    # A sum over GOALS masked entries: cheaper on every backend than a gather of one each.
+    mask = jnp.arange(GOALS) == index[..., None]
+    mask = mask.reshape(mask.shape + (1,) * (values.ndim - mask.ndim))
+    return jnp.sum(jnp.where(mask, values, jnp.zeros_like(values)), axis=index.ndim)
+
+
+def select(
+    flag: Array, chosen: SteeringState, other: SteeringState
+) -> SteeringState:
+    """Return, robot by robot, `chosen` where the flag is set and `other` elsewhere."""
+
+    def pick(left: Array, right: Array) -> Array:
+        return jnp.where(flag.reshape(flag.shape + (1,) * (left.ndim - flag.ndim)), left, right)
+
+    return jax.tree.map(pick, chosen, other)

@@ -1,0 +1,89 @@
+"""Where the policy looks: grids of points around the root, and what an observation holds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from jaxleas.types.errors import InputError
+
+MOTION_SIZE = 4  # velocity in the root frame (3) and the angle to the goal (1)
+
+
+@dataclass(frozen=True)
+class ObservationLayout:
+    """A grid of points around the root, and the order of an observation's values.
+
+    An observation is [velocity x, y, z in the root frame [m/s], angle to the goal [rad], heights
+    of the grid points relative to the root [m], clipped], heights row by row from the rearmost to
+    the foremost, each row from right (y < 0) to left (y > 0).
+
+    Attributes:
+        name: of the layout, written into exported policies.
+        rows: x of the grid's rows in the root frame, ascending [m].
+        columns: y of the grid's columns in the root frame, ascending and symmetric [m].
+    """
+
+    name: str
+    rows: tuple[float, ...]
+    columns: tuple[float, ...]
+
+    @property
+    def points_in_root(self) -> Float[np.ndarray, "points 2"]:
+        """The grid points in the root frame [m], in the order of the observation."""
+        x, y = np.meshgrid(self.rows, self.columns, indexing="ij")
+        return np.stack([x.ravel(), y.ravel()], axis=-1)
+
+    @property
+    def size(self) -> int:
+        """Number of values in an observation."""
+        return MOTION_SIZE + len(self.rows) * len(self.columns)
+
+    @property
+    def mirror_permutation(self) -> Int[np.ndarray, " size"]:
+        """Order in which an observation's values reappear when left and right are swapped."""
+        heights = np.arange(len(self.rows) * len(self.columns)).reshape(len(self.rows), -1)
+        return np.concatenate([np.arange(MOTION_SIZE), MOTION_SIZE + heights[:, ::-1].ravel()])
+
+    @property
+    def mirror_sign(self) -> Float[np.ndarray, " size"]:
+        """Sign of an observation's values when left and right are swapped: y and angle flip."""
+        sign = np.ones(self.size, dtype=np.float32)
+        sign[[1, 3]] = -1.0
+        return sign
+
+
+def _steps(step: float, first: int, last: int) -> tuple[float, ...]:
+    return tuple(round(step * index, 6) for index in range(first, last + 1))
+
+
+# T sec. 3.2.2: 7 rows ahead, 3 behind, 7 columns a side. The columns lie half a step off the axis:
+# evenly spaced, so that no stripe under the root is twice as wide as the others.
+THESIS144 = ObservationLayout(
+    name="thesis144",
+    rows=(*_steps(0.17, -3, -1), *_steps(0.15, 1, 7)),
+    columns=tuple(round(0.09 * (index - 6.5), 6) for index in range(14)),
+)
+
+# I sec. III-A: 9 rows ahead, 2 behind, 7 columns across.
+ICRA81 = ObservationLayout(
+    name="icra81",
+    rows=(*_steps(0.20, -2, -1), *_steps(0.08, 1, 9)),
+    columns=_steps(0.15, -3, 3),
+)
+
+_LAYOUTS = {layout.name: layout for layout in (THESIS144, ICRA81)}
+
+ACTION_SIZE = 4  # acceleration in the root frame (3) and turn rate (1)
+MIRROR_ACTION_SIGN = np.array([1.0, -1.0, 1.0, -1.0], dtype=np.float32)
+
+
+def layout_named(name: str) -> ObservationLayout:
+    """Return the observation layout of that name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in _LAYOUTS:
+        raise InputError(f"no observation layout is called {name!r}; there are {list(_LAYOUTS)}")
+    return _LAYOUTS[name]

@@ -1,0 +1,50 @@
+"""How an action moves the root (T eq. 3.2, 3.3)."""
+
+import jax.numpy as jnp
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.envs.steering.config import MotionLimits
+from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
+from jaxleas.types import RootMotion
+
+
+def bound_norm(vector: Float[Array, "*batch 3"], limit: float) -> Float[Array, "*batch 3"]:
+    """Shorten vectors that are longer than `limit`; leave the others alone."""
+    square = jnp.sum(vector * vector, axis=-1, keepdims=True)
+    # rsqrt of at least limit^2: no division by zero, no branch, finite derivatives at zero.
+    return vector * (limit / jnp.sqrt(jnp.maximum(square, limit * limit)))
+
+
+def scale_action(
+    action: Float[Array, "*batch 4"], limits: MotionLimits
+) -> Float[Array, "*batch 4"]:
+    """Turn a network's action into acceleration in the root frame [m/s^2] and turn rate [rad/s].
+
+    The network answers in [-1, 1]^4; the acceleration's norm is bounded by a_max (T sec. 3.2.3).
+    """
+    acceleration = bound_norm(jnp.clip(action[..., :3], -1.0, 1.0), 1.0) * limits.max_acceleration
+    turn_rate = jnp.clip(action[..., 3:], -1.0, 1.0) * limits.max_turn_rate
+    return jnp.concatenate([acceleration, turn_rate], axis=-1)
+
+
+def integrate(
+    motion: RootMotion, command: Float[Array, "*batch 4"], limits: MotionLimits
+) -> RootMotion:
+    """Move the root for one time step, in the order of T eq. 3.3.
+
+    (a) position += velocity T, with the velocity of before; (b) velocity += acceleration T, its
+    norm bounded by v_max; (c) yaw += omega T.
+
+    Args:
+        motion: of the root.
+        command: acceleration in the root frame [m/s^2] and turn rate [rad/s].
+        limits: time step and bounds.
+    """
+    step = limits.time_step
+    acceleration_in_world = rotate_by_yaw(command[..., :3], motion.yaw)
+    return RootMotion(
+        position=motion.position + motion.velocity * step,
+        velocity=bound_norm(motion.velocity + acceleration_in_world * step, limits.max_speed),
+        yaw=wrap_angle(motion.yaw + command[..., 3] * step),
+    )

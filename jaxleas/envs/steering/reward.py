@@ -1,0 +1,64 @@
+"""The reward (T sec. 3.2.4)."""
+
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.envs.steering.config import RewardWeights, SteeringConfig
+from jaxleas.types import RootMotion
+
+
+@struct.dataclass
+class RewardParams:
+    """The reward's numbers as a pytree, so that a population can train under different ones."""
+
+    direction: Float[Array, ""]
+    orientation: Float[Array, ""]
+    turn: Float[Array, ""]
+    acceleration: Float[Array, ""]
+    alive: Float[Array, ""]
+
+    @classmethod
+    def of(cls, weights: RewardWeights) -> "RewardParams":
+        """Return the weights of a configuration as float32 scalars."""
+        return cls(**{name: jnp.float32(value) for name, value in weights.model_dump().items()})
+
+
+def reward(
+    params: RewardParams,
+    config: SteeringConfig,
+    motion: RootMotion,
+    command: Float[Array, "*batch 4"],
+    toward_goal: Float[Array, "*batch 2"],
+    valid: Float[Array, "*batch"],
+) -> Float[Array, "*batch"]:
+    """Return the reward of arriving at `motion` by `command`.
+
+    R = w_dir R_dir + w_ori R_ori + w_omega R_omega + w_acc R_acc + w_alive R_alive, with
+    R_dir = -(|v - v*| / (2 v_max))^2, R_ori = -(1 - q_ori . u), R_omega = -(omega / omega_max)^2,
+    R_acc = -(|a| / a_max)^2 and R_alive = 1 for a valid configuration.
+
+    Args:
+        params: the weights.
+        config: of the task: bounds and desired speed.
+        motion: of the root after the step.
+        command: acceleration [m/s^2] and turn rate [rad/s].
+        toward_goal: horizontal unit vector to the goal.
+        valid: 1 where the configuration satisfies the conditions, else 0.
+    """
+    limits = config.limits
+    error = motion.velocity.at[..., :2].add(-config.desired_speed * toward_goal)
+    direction = -jnp.sum(error * error, axis=-1) / (2.0 * limits.max_speed) ** 2
+    heading = (
+        jnp.cos(motion.yaw) * toward_goal[..., 0] + jnp.sin(motion.yaw) * toward_goal[..., 1]
+    )
+    turn = -jnp.square(command[..., 3] / limits.max_turn_rate)
+    square = jnp.sum(command[..., :3] * command[..., :3], axis=-1)
+    return (
+        params.direction * direction
+        + params.orientation * (heading - 1.0)
+        + params.turn * turn
+        - params.acceleration * square / limits.max_acceleration**2
+        + params.alive * valid
+    )

@@ -1,0 +1,135 @@
+"""Fresh starts: terrain, position, heading, velocity and goals, drawn anew and checked."""
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+from jaxtyping import Bool, Float, Int, Key
+
+from jaxleas.envs.steering.env import SteeringEnv, select
+from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
+from jaxleas.envs.steering.world import World
+from jaxleas.terrain.atlas import VOID
+from jaxleas.types import RootMotion
+
+# The root stands this far above or below its walking height when an episode starts [m]: the policy
+# must be able to find its height, since users' starts are not exact either.
+HEIGHT_SPREAD = 0.05
+FOREVER = 2**30  # steps
+
+
+@struct.dataclass
+class StartPool:
+    """Candidates for the next starts, with those that are valid listed first.
+
+    Attributes:
+        state: of each candidate.
+        observation: of each candidate.
+        order: indices of the candidates, the valid ones first.
+        valid_count: number of valid candidates.
+    """
+
+    state: SteeringState
+    observation: Float[Array, "candidates size"]
+    order: Int[Array, " candidates"]
+    valid_count: Int[Array, ""]
+
+
+def draw_starts(
+    env: SteeringEnv, world: World, key: Key[Array, ""], count: int
+) -> StartPool:
+    """Draw candidates for starts: a random link, anywhere in its start area, any heading.
+
+    Every call draws anew, so no start is ever replayed. Candidates that violate the condition are
+    kept in the arrays (shapes are fixed) but never used.
+
+    Args:
+        env: the task.
+        world: terrains and links.
+        key: consumed here.
+        count: number of candidates.
+    """
+    link_key, place_key, motion_key, goal_key = jax.random.split(key, 4)
+    link = jax.random.randint(link_key, (count,), 0, len(world.map_index))
+    plan = _draw_plan(env, world, link, goal_key)
+    motion = _draw_motion(env, world, link, place_key, motion_key)
+    state = env.start(motion, plan)
+    heights = env.local_heights(world.atlas, plan.map_index, motion)
+    valid = env.condition(heights, motion) >= 0.0
+    return StartPool(
+        state=state,
+        observation=env.observe(heights, motion, env.goal(state)),
+        order=jnp.nonzero(valid, size=count, fill_value=0)[0].astype(jnp.int32),
+        valid_count=jnp.sum(valid, dtype=jnp.int32),
+    )
+
+
+def take(
+    pool: StartPool, key: Key[Array, ""], count: int
+) -> tuple[SteeringState, Float[Array, "count size"]]:
+    """Return the states and observations of `count` valid starts, drawn from the pool."""
+    rank = jax.random.randint(key, (count,), 0, jnp.maximum(pool.valid_count, 1))
+    index = pool.order[rank]
+    return jax.tree.map(lambda leaf: leaf[index], (pool.state, pool.observation))
+
+
+def restart_where(
+    done: Bool[Array, " batch"],
+    state: SteeringState,
+    observation: Float[Array, "batch size"],
+    pool: StartPool,
+    key: Key[Array, ""],
+) -> tuple[SteeringState, Float[Array, "batch size"]]:
+    """Give a fresh start to the robots whose episode is over; leave the others alone."""
+    fresh_state, fresh_observation = take(pool, key, len(done))
+    return (
+        select(done, fresh_state, state),
+        jnp.where(done[:, None], fresh_observation, observation),
+    )
+
+
+def _draw_motion(
+    env: SteeringEnv, world: World, link: Array, place_key: Array, motion_key: Array
+) -> RootMotion:
+    horizontal = _uniform_in(world.start_area[link], place_key)
+    ground = world.atlas.height_at(world.map_index[link], horizontal[:, None, :])
+    # A root measured from the void would see the void at walking height and pass for valid.
+    ground = jnp.where(ground <= VOID, 0.0, ground)
+    yaw_key, speed_key, height_key = jax.random.split(motion_key, 3)
+    shape = (len(link),)
+    yaw = jax.random.uniform(yaw_key, shape, minval=-jnp.pi, maxval=jnp.pi)
+    # Half of the robots stand; the others walk the way they look (I sec. IV-B).
+    speed = jnp.maximum(jax.random.uniform(speed_key, shape, minval=-1.0), 0.0)
+    speed = speed * env.config.desired_speed
+    spread = jax.random.uniform(height_key, (*shape, 1), minval=-1.0) * HEIGHT_SPREAD
+    return RootMotion(
+        position=jnp.concatenate(
+            [horizontal, ground + env.robot.walking_height + spread], axis=-1
+        ),
+        velocity=jnp.stack(
+            [speed * jnp.cos(yaw), speed * jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1
+        ),
+        yaw=yaw,
+    )
+
+
+def _draw_plan(env: SteeringEnv, world: World, link: Array, key: Array) -> Plan:
+    first_key, later_key, steps_key = jax.random.split(key, 3)
+    count = len(link)
+    first = _uniform_in(world.goal_area[link], first_key)
+    arena = jnp.broadcast_to(world.arena_area[link][:, None], (count, GOALS - 1, 4))
+    later = _uniform_in(arena, later_key)
+    low, high = env.config.goal_steps
+    return Plan(
+        map_index=world.map_index[link],
+        goals=jnp.concatenate([first[:, None], later], axis=1),
+        # The first goal, across the link, stays until it is reached (T sec. 3.4).
+        goal_steps=jax.random.randint(steps_key, (count, GOALS), low, high + 1)
+        .at[:, 0]
+        .set(FOREVER),
+    )
+
+
+def _uniform_in(area: Float[Array, "*batch 4"], key: Array) -> Float[Array, "*batch 2"]:
+    low, high = area[..., 0::2], area[..., 1::2]
+    return low + (high - low) * jax.random.uniform(key, low.shape)

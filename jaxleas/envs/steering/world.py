@@ -1,0 +1,63 @@
+"""What the robots stand in: an atlas of terrains and the links to cross on them."""
+
+from collections.abc import Sequence
+
+import jax.numpy as jnp
+import numpy as np
+from flax import struct
+from jax import Array
+from jaxtyping import Float, Int
+
+from jaxleas.terrain.atlas import Atlas, make_atlas
+from jaxleas.terrain.generator import Arena
+from jaxleas.terrain.rasterise import rasterise
+from jaxleas.types.errors import InputError
+
+
+@struct.dataclass
+class World:
+    """Terrains and tasks; a pytree, so that it can live on the device and be swept.
+
+    Attributes:
+        atlas: the height maps.
+        map_index: of each link's arena in the atlas.
+        start_area: x_min, x_max, y_min, y_max where a link's crossing starts [m].
+        goal_area: likewise where it ends [m].
+        arena_area: likewise of each link's whole arena, for random goals [m].
+    """
+
+    atlas: Atlas
+    map_index: Int[Array, " links"]
+    start_area: Float[Array, "links 4"]
+    goal_area: Float[Array, "links 4"]
+    arena_area: Float[Array, "links 4"]
+
+
+def make_world(arenas: Sequence[Arena], resolution: float) -> World:
+    """Rasterise arenas into one atlas and list their links.
+
+    Args:
+        arenas: each with at least one link among them.
+        resolution: of the height maps [m].
+
+    Raises:
+        InputError: no arena has a link.
+    """
+    maps = [rasterise(arena.scene, resolution) for arena in arenas]
+    links = [(index, link) for index, arena in enumerate(arenas) for link in arena.links]
+    if not links:
+        raise InputError(
+            "the generated arenas hold no link to cross: give more rows or columns of tiles"
+        )
+    extents = [each.extent for each in maps]
+    return World(
+        atlas=make_atlas(maps),
+        map_index=jnp.asarray([index for index, _ in links], dtype=jnp.int32),
+        start_area=_areas([link.start_area for _, link in links]),
+        goal_area=_areas([link.goal_area for _, link in links]),
+        arena_area=_areas([extents[index] for index, _ in links]),
+    )
+
+
+def _areas(areas: Sequence[Sequence[float]]) -> Array:
+    return jnp.asarray(np.array(areas, dtype=np.float32).reshape(-1, 4))

@@ -1,0 +1,72 @@
+"""Reading: every failure is an InputError that names the file, the key and what would do."""
+
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jaxleas.types.errors import InputError
+
+MAX_BYTES = 2**30  # a larger array file is a mistake or an attack, not a map
+
+
+def read_json(path: str | Path) -> Any:
+    """Return the value in a JSON file.
+
+    Raises:
+        InputError: the file is missing, unreadable or not JSON.
+    """
+    text = _bytes(path).decode("utf-8", errors="replace")
+    try:
+        return json.loads(text, parse_constant=lambda name: _refuse_constant(path, name))
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise InputError(f"{path} is not valid JSON: {error}") from error
+
+
+def read_npz(path: str | Path, required: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Return the arrays of a .npz file; Python objects inside it are refused.
+
+    Args:
+        path: the file.
+        required: names of arrays that must be there.
+
+    Raises:
+        InputError: the file is missing, truncated, too large, or lacks an array.
+    """
+    _require_file(path)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            size = sum(entry.file_size for entry in archive.infolist())
+        if size > MAX_BYTES:
+            raise InputError(f"{path} unpacks to {size} bytes, more than the {MAX_BYTES} allowed")
+        with np.load(path, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, MemoryError) as error:
+        raise InputError(f"{path} is not a readable .npz file: {error}") from error
+    missing = [name for name in required if name not in arrays]
+    if missing:
+        raise InputError(
+            f"{path} lacks the array {', '.join(missing)}; it holds {', '.join(arrays) or 'none'}"
+        )
+    return arrays
+
+
+def _bytes(path: str | Path) -> bytes:
+    _require_file(path)
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+
+
+def _require_file(path: str | Path) -> None:
+    if Path(path).is_dir():
+        raise InputError(f"{path} is a folder, not a file")
+    if not Path(path).is_file():
+        raise InputError(f"{path} does not exist")
+
+
+def _refuse_constant(path: str | Path, name: str) -> None:
+    raise InputError(f"{path} holds {name}, which is neither JSON nor a usable number")

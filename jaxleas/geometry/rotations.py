@@ -1,0 +1,54 @@
+"""Turning vectors about the vertical: all the rotation an upright root needs (T 3.3.1)."""
+
+import jax.numpy as jnp
+from jax import Array
+from jaxtyping import Float
+
+
+def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"]) -> Array:
+    """Turn one vector per robot about the vertical: x' = x cos - y sin, y' = x sin + y cos.
+
+    Args:
+        vector: of two or three components [any unit]; the third, if there is one, is kept.
+        yaw: angle to turn by, counter-clockwise seen from above [rad].
+
+    Returns:
+        The turned vector, of the same shape.
+    """
+    cosine, sine = jnp.cos(yaw), jnp.sin(yaw)
+    x, y = vector[..., 0], vector[..., 1]
+    turned = jnp.stack([x * cosine - y * sine, x * sine + y * cosine], axis=-1)
+    return jnp.concatenate([turned, vector[..., 2:]], axis=-1)
+
+
+def rotate_to_world(vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+    """Turn N vectors per robot from the root's heading into the world's axes.
+
+    Args:
+        vector_in_root: N vectors of two or three components [any unit].
+        yaw: heading of the root [rad].
+
+    Returns:
+        The vectors along the world's axes, of the same shape.
+    """
+    return rotate_by_yaw(vector_in_root, yaw[..., None])
+
+
+def rotate_to_root(vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+    """Turn N vectors per robot from the world's axes into the root's heading.
+
+    Args:
+        vector: N vectors along the world's axes, of two or three components [any unit].
+        yaw: heading of the root [rad].
+
+    Returns:
+        The vectors as the root sees them, of the same shape.
+    """
+    return rotate_by_yaw(vector, -yaw[..., None])
+
+
+def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+    """Bring an angle [rad] into [-pi, pi)."""
+    wrapped = (angle + jnp.pi) % (2 * jnp.pi) - jnp.pi
+    # In float32 the remainder of a tiny negative number rounds up to 2 pi itself.
+    return jnp.where(wrapped >= jnp.pi, -jnp.pi, wrapped)

@@ -1,0 +1,75 @@
+"""Many height maps as one device array, sampled by robots anywhere on any of them."""
+
+from collections.abc import Sequence
+
+import jax.numpy as jnp
+import numpy as np
+from flax import struct
+from jax import Array
+from jaxtyping import Float, Int
+
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types.errors import InputError
+
+# No ground. Far below every robot, so that a height relative to any root stays below
+# conditions.VOID_IN_ROOT, and finite, so that no NaN can enter the training arithmetic.
+VOID = -1.0e4
+
+
+@struct.dataclass
+class Atlas:
+    """Height maps of one resolution, padded with void to one shape.
+
+    Attributes:
+        heights: terrain height [m], VOID where there is no ground; the outermost cells of every
+            map are VOID, so that clamping an index is the same as leaving the map.
+        origin: x, y of the centre of each map's cell (0, 0) [m].
+        resolution: side of a cell [m].
+    """
+
+    heights: Float[Array, "maps rows columns"]
+    origin: Float[Array, "maps 2"]
+    resolution: float = struct.field(pytree_node=False)
+
+    def __len__(self) -> int:
+        """Return the number of maps."""
+        return self.heights.shape[0]
+
+    def height_at(
+        self, map_index: Int[Array, "*batch"], point_in_world: Float[Array, "*batch points 2"]
+    ) -> Float[Array, "*batch points"]:
+        """Return the terrain height [m] in the cell that holds each point, VOID off the map."""
+        maps, rows, columns = self.heights.shape
+        offset = point_in_world - self.origin[map_index][..., None, :]
+        cell = jnp.floor(offset * (1.0 / self.resolution) + 0.5)
+        column = jnp.clip(cell[..., 0], 0, columns - 1).astype(jnp.int32)
+        row = jnp.clip(cell[..., 1], 0, rows - 1).astype(jnp.int32)
+        index = (map_index[..., None] * rows + row) * columns + column
+        # One flat gather; the index is in range by construction, so XLA need not check it.
+        return self.heights.reshape(maps * rows * columns).at[index].get(mode="promise_in_bounds")
+
+
+def make_atlas(maps: Sequence[HeightMap]) -> Atlas:
+    """Stack height maps of one resolution into an atlas.
+
+    Args:
+        maps: at least one height map; they may differ in shape and origin.
+
+    Raises:
+        InputError: there is no map, or the resolutions differ.
+    """
+    if not maps:
+        raise InputError("an atlas needs at least one height map")
+    resolution = maps[0].resolution
+    if any(abs(each.resolution - resolution) > 1e-9 for each in maps):
+        given = sorted({each.resolution for each in maps})
+        raise InputError(f"the maps of an atlas must share one resolution, not {given} m")
+    border = 1
+    rows = max(each.heights.shape[0] for each in maps) + 2 * border
+    columns = max(each.heights.shape[1] for each in maps) + 2 * border
+    heights = np.full((len(maps), rows, columns), VOID, dtype=np.float32)
+    for padded, each in zip(heights, maps, strict=True):
+        inner = padded[border : border + each.heights.shape[0], border:]
+        inner[:, : each.heights.shape[1]] = np.where(np.isnan(each.heights), VOID, each.heights)
+    origin = np.array([each.origin for each in maps], dtype=np.float32) - border * resolution
+    return Atlas(heights=jnp.asarray(heights), origin=jnp.asarray(origin), resolution=resolution)

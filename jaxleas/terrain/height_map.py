@@ -1,0 +1,120 @@
+"""Height maps: one height a cell, NaN where there is no ground."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float, Float32
+
+from jaxleas.files import read_npz, write_npz
+from jaxleas.types.errors import InputError
+
+MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 0.5
+"""Accepted cell sizes [m]: finer is not needed by a foot, coarser misses bridges and steps."""
+MAX_CELLS = 64_000_000
+MAX_HEIGHT = 10_000.0
+"""A height beyond this is a unit mistake, not a terrain [m]."""
+
+
+@dataclass(frozen=True)
+class HeightMap:
+    """A terrain as a grid of heights.
+
+    Attributes:
+        heights: row = y, column = x [m]; NaN = no ground.
+        resolution: edge of a cell [m].
+        origin: x, y of the centre of cell (0, 0) [m].
+    """
+
+    heights: Float32[np.ndarray, "rows columns"]
+    resolution: float
+    origin: tuple[float, float]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.heights.shape[0], self.heights.shape[1]
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges of the outermost cells: x_min, x_max, y_min, y_max [m]."""
+        rows, columns = self.shape
+        x_min, y_min = (value - 0.5 * self.resolution for value in self.origin)
+        return x_min, x_min + columns * self.resolution, y_min, y_min + rows * self.resolution
+
+    @property
+    def void_fraction(self) -> float:
+        """Fraction of cells without ground."""
+        return float(np.isnan(self.heights).mean())
+
+    def height_at(self, points: Float[np.ndarray, "N 2"]) -> Float32[np.ndarray, " N"]:
+        """Return the height of the cell that holds each point (x, y) [m]; NaN outside the map."""
+        points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        rows, columns = self.shape
+        cells = np.floor((points - np.array(self.origin)) / self.resolution + 0.5)
+        inside = np.all((cells >= 0) & (cells < np.array([columns, rows])), axis=1)
+        column, row = np.where(inside[:, None], cells, 0.0).astype(np.int64).T
+        return np.where(inside, self.heights[row, column], np.float32(np.nan))
+
+
+def read_height_map(path: str | Path) -> HeightMap:
+    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` [x, y] [m].
+
+    Raises:
+        InputError: says which array is missing or unusable, and what would do.
+    """
+    arrays = read_npz(path, required=("heights", "resolution", "origin"))
+    heights, resolution, origin = arrays["heights"], arrays["resolution"], arrays["origin"]
+    if heights.dtype.kind != "f" or heights.dtype.itemsize != 4:
+        raise InputError(
+            f"{path}: heights are {heights.dtype}, not float32; convert them to float32 metres"
+        )
+    if heights.ndim != 2 or min(heights.shape) < 2:
+        raise InputError(
+            f"{path}: heights have shape {heights.shape}; at least 2 x 2, [rows = y, columns = x]"
+        )
+    if resolution.size != 1 or resolution.dtype.kind not in "fiu":
+        raise InputError(f"{path}: resolution must be one number [m]")
+    if origin.shape != (2,) or origin.dtype.kind not in "fiu" or not np.isfinite(origin).all():
+        raise InputError(f"{path}: origin must be two finite numbers, x and y of cell (0, 0) [m]")
+    require_usable(heights, float(resolution.reshape(())), path)
+    return HeightMap(
+        np.ascontiguousarray(heights, dtype=np.float32),
+        float(resolution.reshape(())),
+        (float(origin[0]), float(origin[1])),
+    )
+
+
+def write_height_map(path: str | Path, height_map: HeightMap) -> None:
+    """Write a height map as .npz, whole or not at all."""
+    write_npz(
+        path,
+        heights=height_map.heights.astype(np.float32),
+        resolution=np.float64(height_map.resolution),
+        origin=np.array(height_map.origin, dtype=np.float64),
+    )
+
+
+def require_usable(
+    heights: Float[np.ndarray, "rows columns"], resolution: float, where: str | Path
+) -> None:
+    """Refuse heights that hold no ground, infinities or kilometres, and absurd cell sizes."""
+    require_resolution(resolution, where)
+    if heights.size > MAX_CELLS:
+        raise InputError(f"{where}: {heights.size} cells, more than the {MAX_CELLS} accepted")
+    if np.isinf(heights).any():
+        raise InputError(f"{where}: heights hold infinity; use NaN where there is no ground")
+    if np.isnan(heights).all():
+        raise InputError(f"{where}: every height is NaN: there is no ground anywhere")
+    highest = float(np.nanmax(np.abs(heights)))
+    if highest > MAX_HEIGHT:
+        raise InputError(f"{where}: a height of {highest:.6g} m is no terrain; are these metres?")
+
+
+def require_resolution(resolution: float, where: str | Path) -> None:
+    """Refuse a cell size outside [0.005, 0.5] m, or one that is not a number."""
+    if not MIN_RESOLUTION <= resolution <= MAX_RESOLUTION:
+        raise InputError(
+            f"{where}: resolution {resolution:g} m is outside "
+            f"[{MIN_RESOLUTION:g}, {MAX_RESOLUTION:g}] m; 0.04 m is usual"
+        )

@@ -1,0 +1,108 @@
+"""Checks on one convex polygon: is it one, which way does it wind, which plane does it span?"""
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.types.errors import InputError
+
+PLANARITY_TOLERANCE = 1e-3
+"""Largest accepted distance of a vertex from the polygon's plane [m]."""
+CONVEXITY_TOLERANCE = 1e-3
+"""Largest accepted distance by which a vertex may lie on the wrong side of an edge [m]."""
+VERTICAL_SLOPE = 1e-3
+"""A polygon whose unit normal's |z| is below this is vertical: it has no height above a point."""
+MIN_AREA = 1e-6
+"""A polygon smaller than this is degenerate [m^2]."""
+
+
+def polygon_area_vector(vertices: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, " 3"]:
+    """Return Newell's vector: along the right-hand normal, as long as the area [m^2]."""
+    centred = vertices - vertices.mean(axis=0)
+    return 0.5 * np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)
+
+
+def is_vertical(vertices: Float[np.ndarray, "V 3"]) -> bool:
+    """Return whether the polygon is a wall, without a height above any point of the plane."""
+    area = polygon_area_vector(vertices)
+    return bool(abs(area[2]) <= VERTICAL_SLOPE * np.linalg.norm(area))
+
+
+def planarity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
+    """Return the largest distance of a vertex from the plane through the centroid [m]."""
+    area = polygon_area_vector(vertices)
+    normal = area / np.linalg.norm(area)
+    return float(np.abs((vertices - vertices.mean(axis=0)) @ normal).max())
+
+
+def convexity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
+    """Return how far a vertex lies outside an edge's half-plane, at worst [m]; 0 if convex."""
+    area = polygon_area_vector(vertices)
+    normal = area / np.linalg.norm(area)
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    inward = np.cross(normal, edges)
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True)
+    distance = np.einsum("ek,evk->ev", inward, vertices[None, :, :] - vertices[:, None, :])
+    return float(max(0.0, -distance.min()))
+
+
+def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall: bool) -> None:
+    """Refuse what is not a planar, convex polygon, counter-clockwise seen from above.
+
+    Args:
+        vertices: corners in order [m].
+        where: names the file and the polygon, for the message.
+        wall: whether a vertical polygon is welcome (a side face of an obstacle).
+
+    Raises:
+        InputError: says which of these it fails, and by how many metres.
+    """
+    if len(vertices) < 3:
+        raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
+    if not np.isfinite(vertices).all():
+        raise InputError(f"{where} has a coordinate that is not a finite number")
+    gaps = np.linalg.norm(vertices[:, None, :] - vertices[None, :, :], axis=-1)
+    if (gaps[np.triu_indices(len(vertices), 1)] < 1e-6).any():
+        raise InputError(f"{where} repeats a vertex; list each corner once")
+    area = polygon_area_vector(vertices)
+    if np.linalg.norm(area) < MIN_AREA:
+        raise InputError(f"{where} is degenerate: its area is below {MIN_AREA:g} m^2")
+    deviation = planarity_deviation(vertices)
+    if deviation > PLANARITY_TOLERANCE:
+        raise InputError(
+            f"{where} is not planar: a vertex lies {deviation:.4g} m off its plane "
+            f"(at most {PLANARITY_TOLERANCE:g} m is accepted)"
+        )
+    deviation = convexity_deviation(vertices)
+    if deviation > CONVEXITY_TOLERANCE:
+        raise InputError(
+            f"{where} is not convex: a vertex lies {deviation:.4g} m outside an edge "
+            f"(at most {CONVEXITY_TOLERANCE:g} m is accepted); cut it into convex parts"
+        )
+    if is_vertical(vertices):
+        if not wall:
+            raise InputError(
+                f"{where} is vertical: nothing can stand on it; list it as an obstacle"
+            )
+    elif area[2] < 0.0:
+        raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
+
+
+def box_faces(
+    corners: Float[np.ndarray, "4 2"], bottom: float, top: float
+) -> dict[str, Float[np.ndarray, "4 3"]]:
+    """Return the top and the four side faces of an upright box, wound outwards.
+
+    Args:
+        corners: of the footprint, counter-clockwise from above [m].
+        bottom: height of the box's foot [m].
+        top: height of its top face [m].
+
+    Returns:
+        `{"top": ..., "side_0": ..., ..., "side_3": ...}`.
+    """
+    lift = lambda points, z: np.column_stack([points, np.full(len(points), z)])  # noqa: E731
+    faces = {"top": lift(corners, top)}
+    for side in range(4):
+        edge = corners[[side, (side + 1) % 4]]
+        faces[f"side_{side}"] = np.vstack([lift(edge, bottom), lift(edge[::-1], top)])
+    return faces

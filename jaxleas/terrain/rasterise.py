@@ -1,0 +1,167 @@
+"""Polygons to height maps: at each cell centre the highest polygon that covers it."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
+from jaxleas.terrain.polygons import VERTICAL_SLOPE
+from jaxleas.terrain.scene import Scene
+from jaxleas.types.errors import InputError
+
+DEFAULT_RESOLUTION = 0.04
+CLOSING = 0.01
+"""Polygons are grown by this much [m]: contact surfaces are inset by 1 cm a side (generator),
+and without it the seams between tiles and steps would be one-cell cracks of void."""
+BLOCK = 64
+"""Polygons are cut into blocks of at most this many cells a side, so that memory stays small."""
+BATCH_CELLS = 1_000_000
+
+
+def rasterise(
+    scene: Scene, resolution: float = DEFAULT_RESOLUTION, margin: float = 0.5
+) -> HeightMap:
+    """Return the height map of a scene: surfaces and obstacles alike, vertical faces skipped.
+
+    Cell edges lie at multiples of the resolution.
+
+    Args:
+        scene: what to rasterise.
+        resolution: edge of a cell [m].
+        margin: width of void around the scene [m].
+
+    Raises:
+        InputError: the resolution is absurd, or the map would be too large.
+    """
+    return rasterise_polygons(scene.polygons, resolution, margin, grow=CLOSING)
+
+
+def rasterise_polygons(
+    polygons: Sequence[Float[np.ndarray, "V 3"]] | Float[np.ndarray, "N V 3"],
+    resolution: float,
+    margin: float,
+    grow: float = 0.0,
+    where: str = "scene",
+) -> HeightMap:
+    """Return the height map of convex polygons, each grown by `grow` [m] a side."""
+    require_resolution(resolution, where)
+    padded = _pad(polygons)
+    low = np.floor((padded[..., :2].min(axis=(0, 1)) - margin) / resolution)
+    high = np.ceil((padded[..., :2].max(axis=(0, 1)) + margin) / resolution)
+    columns, rows = (high - low).tolist()
+    if not rows * columns <= MAX_CELLS:
+        raise InputError(
+            f"{where}: {rows:.6g} x {columns:.6g} cells of {resolution:g} m, more than the "
+            f"{MAX_CELLS} accepted; take a coarser resolution or a smaller terrain"
+        )
+    origin = (low + 0.5) * resolution
+    heights = np.full(int(rows) * int(columns), -np.inf, dtype=np.float32)
+    planes = _planes(padded, origin, resolution, grow)
+    for size, chosen, corner in _batches(planes, int(rows), int(columns)):
+        _paint(heights, int(columns), planes, size, chosen, corner)
+    heights[np.isneginf(heights)] = np.nan
+    return HeightMap(
+        heights.reshape(int(rows), int(columns)), resolution, (float(origin[0]), float(origin[1]))
+    )
+
+
+class _Planes(NamedTuple):
+    """Non-vertical polygons in cell units: inside where normal . cell <= offset for all edges."""
+
+    normal: Float[np.ndarray, "N V 2"]
+    offset: Float[np.ndarray, "N V"]
+    slope: Float[np.ndarray, "N 2"]
+    height: Float[np.ndarray, " N"]
+    first: Int[np.ndarray, "N 2"]
+    last: Int[np.ndarray, "N 2"]
+
+
+def _pad(polygons: Sequence[np.ndarray] | np.ndarray) -> Float[np.ndarray, "N V 3"]:
+    """Repeat last vertices until all have as many: an edge of length 0 excludes nothing."""
+    if isinstance(polygons, np.ndarray):
+        return polygons.astype(np.float64, copy=False)
+    most = max(len(vertices) for vertices in polygons)
+    return np.stack(
+        [
+            np.pad(vertices, ((0, most - len(vertices)), (0, 0)), mode="edge")
+            for vertices in polygons
+        ]
+    ).astype(np.float64)
+
+
+def _planes(
+    polygons: Float[np.ndarray, "N V 3"], origin: np.ndarray, resolution: float, grow: float
+) -> _Planes:
+    following = np.roll(polygons, -1, axis=1)
+    centre = polygons.mean(axis=1, keepdims=True)
+    area = 0.5 * np.cross(polygons - centre, following - centre).sum(axis=1)
+    level = np.abs(area[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(area, axis=1)
+    polygons, following, area = polygons[level], following[level], area[level]
+    cells = (polygons[..., :2] - origin) / resolution
+    edge = (following[..., :2] - polygons[..., :2]) * np.sign(area[:, 2])[:, None, None]
+    length = np.linalg.norm(edge, axis=-1, keepdims=True)
+    outward = np.stack([edge[..., 1], -edge[..., 0]], axis=-1)
+    normal = np.divide(outward, length, out=np.zeros_like(outward), where=length > 0.0)
+    slope = -area[:, :2] / area[:, 2:] * resolution
+    anchor = polygons.mean(axis=1)
+    anchor_cell = (anchor[:, :2] - origin) / resolution
+    # 1e-6 cells: neighbours that share an edge must leave no cell to rounding between them
+    reach = grow / resolution + 1e-6
+    return _Planes(
+        normal=normal,
+        offset=(normal * cells).sum(axis=-1) + reach,
+        slope=slope,
+        height=anchor[:, 2] - (slope * anchor_cell).sum(axis=-1),
+        first=np.ceil(cells.min(axis=1) - reach).astype(np.int64),
+        last=np.floor(cells.max(axis=1) + reach).astype(np.int64),
+    )
+
+
+def _batches(
+    planes: _Planes, rows: int, columns: int
+) -> Iterator[tuple[int, Int[np.ndarray, " B"], Int[np.ndarray, "B 2"]]]:
+    """Yield (block size, polygon indices, first cells) of blocks that cover every polygon."""
+    first = np.maximum(planes.first, 0)
+    last = np.minimum(planes.last, np.array([columns, rows]) - 1)
+    span = last - first + 1
+    count = np.where((span > 0).all(axis=1, keepdims=True), -(-span // BLOCK), 0)
+    blocks = count[:, 0] * count[:, 1]
+    polygon = np.repeat(np.arange(len(blocks)), blocks)
+    within = np.arange(len(polygon)) - np.repeat(np.cumsum(blocks) - blocks, blocks)
+    across = np.maximum(count[polygon, 0], 1)
+    corner = first[polygon] + BLOCK * np.stack([within % across, within // across], axis=-1)
+    needed = np.minimum(last[polygon] - corner + 1, BLOCK).max(axis=1, initial=1)
+    size = 2 ** np.ceil(np.log2(needed)).astype(np.int64)
+    for side in np.unique(size):
+        members = np.flatnonzero(size == side)
+        step = max(1, BATCH_CELLS // int(side * side))
+        for start in range(0, len(members), step):
+            chosen = members[start : start + step]
+            yield int(side), polygon[chosen], corner[chosen]
+
+
+def _paint(
+    heights: np.ndarray,
+    columns: int,
+    planes: _Planes,
+    side: int,
+    chosen: Int[np.ndarray, " B"],
+    corner: Int[np.ndarray, "B 2"],
+) -> None:
+    """Raise the heights of the cells in these blocks to the polygons that cover them."""
+    step = np.arange(side)
+    x = (corner[:, 0, None] + step)[:, None, :]
+    y = (corner[:, 1, None] + step)[:, :, None]
+    last = planes.last[chosen]
+    rows = len(heights) // columns
+    inside = (x <= np.minimum(last[:, 0], columns - 1)[:, None, None]) & (
+        y <= np.minimum(last[:, 1], rows - 1)[:, None, None]
+    )
+    for edge in range(planes.normal.shape[1]):
+        normal = planes.normal[chosen, edge, :, None, None]
+        inside &= normal[:, 0] * x + normal[:, 1] * y <= planes.offset[chosen, edge, None, None]
+    slope = planes.slope[chosen, :, None, None]
+    z = slope[:, 0] * x + slope[:, 1] * y + planes.height[chosen, None, None]
+    np.maximum.at(heights, (y * columns + x)[inside], z[inside].astype(np.float32))

@@ -1,0 +1,118 @@
+"""Scenes: convex contact surfaces, obstacles and named areas; what height maps are made from."""
+
+import difflib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.files import read_json, write_json
+from jaxleas.terrain.polygons import require_convex_polygon
+from jaxleas.types.errors import InputError
+
+VERSION = 1
+KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas")
+Polygons = dict[str, Float[np.ndarray, "V 3"]]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A terrain as polygons.
+
+    Attributes:
+        surfaces: convex planar polygons that feet may stand on, counter-clockwise seen from
+            above [m].
+        obstacles: convex planar polygons that must not be touched: tops as above, side faces
+            vertical and wound outwards; box "obstacle_7" has the faces "obstacle_7_top" and
+            "obstacle_7_side_0" to "obstacle_7_side_3" [m].
+        areas: named polygons for starts and goals, 2 or 3 coordinates a vertex [m].
+    """
+
+    surfaces: Polygons
+    obstacles: Polygons = field(default_factory=dict)
+    areas: dict[str, Float[np.ndarray, "V 2|3"]] = field(default_factory=dict)
+
+    @property
+    def polygons(self) -> list[Float[np.ndarray, "V 3"]]:
+        """All polygons that can carry or block, surfaces first."""
+        return [*self.surfaces.values(), *self.obstacles.values()]
+
+
+def read_scene(path: str | Path) -> Scene:
+    """Read a scene from JSON: `surfaces`, and optionally `obstacles`, `areas` and `version`.
+
+    Raises:
+        InputError: the file, or one polygon in it (named), cannot be used.
+    """
+    content = read_json(path)
+    if not isinstance(content, dict) or "surfaces" not in content:
+        raise InputError(f"{path} is not a scene: it needs an object with the key 'surfaces'")
+    _refuse_misspelt_keys(path, content)
+    if content.get("version", VERSION) != VERSION:
+        raise InputError(f"{path} has version {content['version']!r}; this package reads {VERSION}")
+    scene = Scene(
+        surfaces=_polygons(path, content, "surfaces", dimensions=(3,)),
+        obstacles=_polygons(path, content, "obstacles", dimensions=(3,)),
+        areas=_polygons(path, content, "areas", dimensions=(2, 3)),
+    )
+    if not scene.surfaces:
+        raise InputError(f"{path} has no surfaces: nothing can stand anywhere")
+    require_valid(scene, path)
+    return scene
+
+
+def write_scene(path: str | Path, scene: Scene) -> None:
+    """Write a scene as JSON, whole or not at all; coordinates to a micrometre."""
+    groups = {"surfaces": scene.surfaces, "obstacles": scene.obstacles, "areas": scene.areas}
+    lists = {
+        group: {name: np.round(vertices, 6).tolist() for name, vertices in polygons.items()}
+        for group, polygons in groups.items()
+    }
+    write_json(path, {"version": VERSION, **lists})
+
+
+def require_valid(scene: Scene, where: str | Path) -> None:
+    """Refuse a scene with a polygon that is not planar, convex and counter-clockwise."""
+    for name, vertices in scene.surfaces.items():
+        require_convex_polygon(vertices, f"{where}: surface '{name}'", wall=False)
+    for name, vertices in scene.obstacles.items():
+        require_convex_polygon(vertices, f"{where}: obstacle '{name}'", wall=True)
+    for name, vertices in scene.areas.items():
+        lifted = np.column_stack([vertices[:, :2], np.zeros(len(vertices))])
+        require_convex_polygon(lifted, f"{where}: area '{name}'", wall=False)
+
+
+def _polygons(
+    path: str | Path, content: dict[str, Any], key: str, dimensions: tuple[int, ...]
+) -> dict[str, np.ndarray]:
+    group = content.get(key, {})
+    if not isinstance(group, dict):
+        raise InputError(f"{path}: '{key}' must be an object of name: [[x, y, z], ...]")
+    return {name: _polygon(path, key, name, value, dimensions) for name, value in group.items()}
+
+
+def _polygon(
+    path: str | Path, key: str, name: str, value: Any, dimensions: tuple[int, ...]
+) -> np.ndarray:
+    wanted = " or ".join(str(number) for number in dimensions)
+    problem = f"{path}: {key} '{name}' must be a list of vertices of {wanted} numbers each"
+    if not isinstance(value, list) or not all(isinstance(vertex, list) for vertex in value):
+        raise InputError(problem)
+    numbers = [number for vertex in value for number in vertex]
+    if not all(isinstance(number, int | float) and number is not True for number in numbers):
+        raise InputError(problem)
+    if len({len(vertex) for vertex in value}) > 1 or (value and len(value[0]) not in dimensions):
+        raise InputError(problem)
+    if not all(abs(number) < 1e6 for number in numbers):
+        raise InputError(f"{path}: {key} '{name}' has a coordinate beyond 1000 km")
+    return np.array(value, dtype=np.float64).reshape(len(value), -1)
+
+
+def _refuse_misspelt_keys(path: str | Path, content: dict[str, Any]) -> None:
+    for key in content:
+        if key not in KNOWN_KEYS:
+            nearest = difflib.get_close_matches(key, KNOWN_KEYS, n=1, cutoff=0.75)
+            if nearest:
+                raise InputError(f"{path}: unknown key '{key}'; did you mean '{nearest[0]}'?")

@@ -1,0 +1,149 @@
+"""Checkpoints of the full training state: written whole or not at all, checked when read.
+
+One .npz file a checkpoint, rather than an orbax `CheckpointManager`. Measured on 49 MB of state
+(two shared cores, orbax 0.12.8): 0.10 s a save against 0.18-0.24 s, one file against 21. After one
+flipped bit in its array file orbax restored wrong numbers without a word, 7 times of 7; every array
+of an .npz carries a checksum. Over truncated files orbax wrote 5,300 lines of tracebacks.
+"""
+
+import json
+import logging
+import math
+import zipfile
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from jaxleas.files import atomic_path
+from jaxleas.training.checkpoint_leaves import pack, unpack
+from jaxleas.types.errors import InputError
+
+FORMAT = 1
+State = TypeVar("State")
+_LOG = logging.getLogger("jaxleas")
+
+
+class _DamageError(Exception):
+    """A checkpoint file that cannot be read whole."""
+
+
+class Checkpoints:
+    """The last few checkpoints of a run, and the best.
+
+    Args:
+        folder: where they lie; made at the first save.
+        keep_last: how many of the newest are kept beside the best.
+    """
+
+    def __init__(self, folder: str | Path, keep_last: int = 2) -> None:
+        if keep_last < 1:
+            raise ValueError(f"keep_last is {keep_last}; at least one checkpoint must be kept")
+        self.folder = Path(folder)
+        self.keep_last = keep_last
+
+    def save(
+        self, step: int, state: Any, note: dict[str, Any], best_score: float | None = None
+    ) -> None:
+        """Write the state at `step`; a kill at any moment leaves the earlier ones usable.
+
+        Checkpoints of later steps are removed: they belong to a future that was abandoned when an
+        earlier one was resumed.
+
+        Args:
+            step: training steps done, not negative.
+            state: any pytree of arrays, typed random keys and Python numbers.
+            note: plain JSON values that travel with the state.
+            best_score: higher is better; None or NaN means that this one never counts as best.
+
+        Raises:
+            InputError: the file cannot be written (disk full, no permission).
+        """
+        entries, arrays = pack(state)
+        manifest = {"format": FORMAT, "step": step, "score": best_score, "note": note}
+        text = json.dumps({**manifest, "leaves": entries}).encode()
+        with atomic_path(self._path(step)) as temporary, temporary.open("wb") as stream:
+            np.savez(stream, manifest=np.frombuffer(text, np.uint8), **arrays)  # type: ignore[arg-type]
+        self._prune(step)
+
+    def steps(self) -> list[int]:
+        """Return the steps of which a checkpoint lies here, oldest first."""
+        return sorted(int(path.stem.split("_")[1]) for path in self.folder.glob("step_*.npz"))
+
+    def latest(self, like: State, partial: bool = False) -> tuple[int, State, dict[str, Any]]:
+        """Return step, state and note of the newest checkpoint that can be read.
+
+        A damaged one is passed over; the log then says what was lost.
+
+        Args:
+            like: a pytree of the same structure, shapes and types (arrays or `jax.eval_shape`'s).
+            partial: take only the leaves that `like` names; otherwise all must match.
+
+        Raises:
+            InputError: there is no checkpoint, none can be read, or it is of another state.
+        """
+        return self._first_readable(self.steps()[::-1], like, partial)
+
+    def best(self, like: State, partial: bool = False) -> tuple[int, State, dict[str, Any]]:
+        """Return the checkpoint with the highest score (the earliest of equals); see `latest`.
+
+        Raises:
+            InputError: as `latest`, or no checkpoint has a score.
+        """
+        ranked = self._ranked()
+        if self.steps() and not ranked:
+            raise InputError(f"no checkpoint in {self.folder} has a score to be the best by")
+        return self._first_readable(ranked, like, partial)
+
+    def _first_readable(self, steps: list[int], like: Any, partial: bool) -> Any:
+        damages = []
+        for step in steps:
+            path = self._path(step)
+            try:
+                manifest, arrays = _read(path)
+            except _DamageError as damage:
+                damages.append(f"{path.name} is damaged ({damage})")
+                continue
+            if damages:
+                _LOG.warning("%s: the checkpoint of step %d is used", "; ".join(damages), step)
+            state = unpack(like, manifest["leaves"], arrays, str(path), partial)
+            return step, state, manifest["note"]
+        what = "; ".join(damages) or "there is none"
+        raise InputError(f"no usable checkpoint in {self.folder}: {what}")
+
+    def _ranked(self) -> list[int]:
+        """Return the steps with a finite score, best first, of those whose manifest is readable."""
+        scores = {}
+        for step in self.steps():
+            try:
+                score = _read(self._path(step), manifest_only=True)[0]["score"]
+            except _DamageError:
+                continue
+            if score is not None and math.isfinite(score):
+                scores[step] = score
+        return sorted(scores, key=lambda step: (-scores[step], step))
+
+    def _prune(self, newest: int) -> None:
+        ours = [step for step in self.steps() if step <= newest]
+        keep = {*ours[-self.keep_last :], *[s for s in self._ranked() if s <= newest][:1]}
+        for step in set(self.steps()) - keep:
+            self._path(step).unlink(missing_ok=True)
+        for leftover in self.folder.glob(".step_*.npz"):  # of a save that was killed
+            leftover.unlink(missing_ok=True)
+
+    def _path(self, step: int) -> Path:
+        return self.folder / f"step_{step:012d}.npz"
+
+
+def _read(path: Path, manifest_only: bool = False) -> tuple[Any, dict[str, np.ndarray]]:
+    """Return manifest and arrays; unlike an input file, a checkpoint may be of any size."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            manifest = json.loads(archive["manifest"].tobytes())
+            names = [] if manifest_only else archive.files
+            arrays = {name: archive[name] for name in names if name != "manifest"}
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        raise _DamageError(" ".join(str(error).split())) from error
+    if manifest["format"] != FORMAT:
+        raise InputError(f"{path} is in format {manifest['format']}; this version reads {FORMAT}")
+    return manifest, arrays

@@ -1,0 +1,120 @@
+"""What a training run is told: one frozen section a room, and the whole."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.seeds import MAX_TRAINING_SEED
+from jaxleas.types.strict import Strict
+
+Count = Annotated[int, Field(ge=1)]
+Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+
+
+class TerrainConfig(Strict):
+    """The arenas that are trained on."""
+
+    arenas: Count = 64
+    """Number of random arenas in the atlas."""
+    resolution: Annotated[float, Field(ge=0.01, le=0.2)] = 0.04
+    """Side of a height map's cell [m]."""
+    first_seed: Annotated[int, Field(ge=0, le=MAX_TRAINING_SEED)] = 0
+    """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
+    generator: GeneratorConfig = GeneratorConfig()
+
+
+class NetworkConfig(Strict):
+    """Actor and critic, two distinct networks (T sec. 3.4)."""
+
+    hidden: tuple[Count, ...] = (128, 64, 32)
+    """Sizes of the hidden layers."""
+    activation: Literal["relu", "tanh", "swish", "elu"] = "relu"
+    normaliser: Literal["affine", "running"] = "affine"
+    """`affine`: fixed, from the observation's bounds; `running`: Brax's running statistics."""
+
+
+class PpoConfig(Strict):
+    """Proximal policy optimisation."""
+
+    steps: Count = 6_000_000
+    """Environment steps of the whole training."""
+    environments: Count = 2048
+    """Robots that walk at once."""
+    unroll: Count = 20
+    """Steps each robot takes between two policy updates."""
+    minibatches: Count = 16
+    epochs: Count = 4
+    """Passes over each batch."""
+    learning_rate: Positive = 5e-4
+    """At the start; it falls linearly (T sec. 3.4)."""
+    final_learning_rate: NonNegative = 1e-5
+    discount: Fraction = 0.97
+    """gamma: about 33 steps, 66 cm, of foresight (T sec. 3.4)."""
+    gae_lambda: Fraction = 0.95
+    clip: Positive = 0.2
+    entropy: NonNegative = 0.003
+    value_weight: NonNegative = 0.5
+    reward_scale: Positive = 0.1
+    max_gradient_norm: Positive = 1.0
+    mirror: bool = True
+    """Learn from each batch's mirror image as often as from the batch itself."""
+    averaging: Fraction = 0.99
+    """Decay per update of the exponential average of the policy that is judged and exported."""
+    candidates: Count = 1024
+    """Fresh starts drawn before each update."""
+
+    @property
+    def batch(self) -> int:
+        """Environment steps between two policy updates."""
+        return self.environments * self.unroll
+
+    @property
+    def updates(self) -> int:
+        """Policy updates of the whole training."""
+        return -(-self.steps // self.batch)
+
+    @model_validator(mode="after")
+    def _divisible(self) -> Self:
+        if self.environments % self.minibatches:
+            raise ValueError(
+                f"minibatches = {self.minibatches} does not divide environments ="
+                f" {self.environments}: a minibatch is a whole number of robots"
+            )
+        return self
+
+
+class HeldOutConfig(Strict):
+    """The small examination during training, on terrain that is never trained on."""
+
+    every: Count = 10
+    """Policy updates between two examinations (and checkpoints)."""
+    starts: Count = 512
+    arenas: Count = 16
+    steps: Count = 500
+    """A start that has not reached its goal by then has failed."""
+
+
+class FinalConfig(Strict):
+    """What follows training: the verdict, the artifacts and the report."""
+
+    evaluate: bool = True
+    """Judge the best policy on the evaluation suites, export it and write the report."""
+    starts: Count = 1000
+    """Starts a cell of the transitions suite."""
+
+
+class RunConfig(Strict):
+    """One experiment."""
+
+    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
+    """Of everything random in training except the terrain."""
+    terrain: TerrainConfig = TerrainConfig()
+    env: SteeringConfig = SteeringConfig()
+    network: NetworkConfig = NetworkConfig()
+    ppo: PpoConfig = PpoConfig()
+    held_out: HeldOutConfig = HeldOutConfig()
+    final: FinalConfig = FinalConfig()

@@ -1,0 +1,153 @@
+"""Reading a configuration: YAML files, then the command line, then one validation of it all.
+
+Pydantic validates and our own few lines parse `--any.field VALUE`. tyro does this too, but answers
+in boxes of many lines, and knows neither which of several files a value came from nor pydantic's
+ranges before it has parsed; here every mistake is one sentence, whether it was made in a file, in
+the file that this one extends, or on the command line.
+"""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from jaxleas.training.configuration_fields import fields_of, help_text, nearest
+from jaxleas.training.configuration_yaml import dump_yaml, parse_yaml, read_mapping
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+Model = TypeVar("Model", bound=Strict)
+# Where values come from, weakest first: (what to call it in a sentence, what it states).
+Layers = list[tuple[str, dict[str, Any]]]
+COMMAND_LINE = "command line"
+
+
+def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] = ()) -> Model:
+    """Return the configuration that a YAML file and the command line state together.
+
+    A file may state `extends: other.yaml` (relative to itself) and then only what differs.
+
+    Args:
+        model: the kind of configuration.
+        path: the YAML file.
+        overrides: arguments such as `--ppo.discount 0.97` or `--ppo.discount=0.97`, for any field
+            of the model; values are written as in YAML, the last of several wins. With `--help`
+            among them, all fields are printed and the program ends.
+
+    Raises:
+        InputError: one sentence that names the file (or the command line), the key, what was
+            given, and what would do.
+    """
+    layers = _layers(Path(path), ())
+    wants_help = any(argument in ("--help", "-h") for argument in overrides)
+    if not wants_help:
+        layers.append((COMMAND_LINE, _parse_overrides(model, overrides)))
+    config = _validate(model, layers)
+    if wants_help:
+        print(help_text(model, config))
+        raise SystemExit(0)
+    return config
+
+
+def to_yaml(config: Strict) -> str:
+    """Return the resolved configuration as YAML: `load_config` reads an equal one from it."""
+    return dump_yaml(config.model_dump(mode="json"))
+
+
+def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
+    """Return what `path` and the files it extends state, the most basic first."""
+    if path.resolve() in above:
+        raise InputError(f"{path} extends itself: {' -> '.join(map(str, (*above, path)))}")
+    stated = read_mapping(path)
+    parent = stated.pop("extends", None)
+    if parent is None:
+        return [(str(path), stated)]
+    if not isinstance(parent, str):
+        raise InputError(f"{path}: extends is {parent!r}, but it should name one YAML file")
+    return [*_layers(path.parent / parent, (*above, path.resolve())), (str(path), stated)]
+
+
+def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str, Any]:
+    """Return what `--any.field VALUE` and `--any.field=VALUE` state, nested as in the model."""
+    fields = {field.name: field for field in fields_of(model)}
+    stated: dict[str, Any] = {}
+    rest = list(arguments)
+    while rest:
+        option, equals, text = rest.pop(0).partition("=")
+        name = option.removeprefix("--").replace("-", "_")
+        if not option.startswith("--") or not name:
+            raise InputError(
+                f"{COMMAND_LINE}: '{option}' stands alone; overrides look like --any.field VALUE"
+            )
+        if name not in fields:
+            raise InputError(f"{COMMAND_LINE}: there is no {option}{_hint(name, list(fields), 2)}")
+        if not equals:
+            if not rest or rest[0].startswith("--"):
+                raise InputError(f"{COMMAND_LINE}: {option} needs a value: {option} VALUE")
+            text = rest.pop(0)
+        try:
+            value = text if fields[name].info.annotation in (str, Path) else parse_yaml(text)
+        except ValueError as error:
+            raise InputError(f"{COMMAND_LINE}: {option} {text} is not YAML: {error}") from error
+        for part in reversed(name.split(".")):
+            value = {part: value}
+        stated = _merge(stated, value)
+    return stated
+
+
+def _merge(below: Any, above: Any) -> Any:
+    """Return `below` with everything that `above` states put over it, key by key."""
+    if not isinstance(below, dict) or not isinstance(above, dict):
+        return above
+    return {**below, **{key: _merge(below.get(key), value) for key, value in above.items()}}
+
+
+def _validate(model: type[Model], layers: Layers) -> Model:
+    stated: dict[str, Any] = {}
+    for _, layer in layers:
+        stated = _merge(stated, layer)
+    try:
+        # Strict, as JSON: a list may become a tuple and a text a path, but "3" is never a number.
+        return model.model_validate_json(json.dumps(stated, default=str), strict=True)
+    except ValidationError as error:
+        first, *others = error.errors()
+        more = f" (and {len(others)} more)" if others else ""
+        raise InputError(_sentence(model, layers, first) + more) from error
+
+
+def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
+    """Return what pydantic found wrong, as one sentence with its source."""
+    parts = [str(part) for part in error["loc"]]
+    name = ".".join(parts)
+    source = next(
+        (label for label, layer in reversed(layers) if _states(layer, parts)), layers[0][0]
+    )
+    problem = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    if error["type"] == "extra_forbidden":
+        names = [field.name for field in fields_of(model)]
+        return f"{source}: there is no {name}{_hint(name, names)}"
+    if error["type"] == "missing":
+        return f"{source}: {name} is missing and has no default"
+    if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once
+        return f"{source}: {f'{name}: ' if name else ''}{problem}"
+    return f"{source}: {name} is {error['input']!r}, but {problem}"
+
+
+def _states(layer: Any, parts: list[str]) -> bool:
+    for part in parts:
+        if isinstance(layer, list):
+            return True  # lists are replaced whole
+        if not isinstance(layer, dict) or part not in layer:
+            return False
+        layer = layer[part]
+    return True
+
+
+def _hint(name: str, names: list[str], dashes: int = 0) -> str:
+    close = nearest(name, names)
+    if close is not None:
+        return f"; perhaps you meant {'-' * dashes}{close}"
+    tops = [name for name in names if "." not in name]
+    return f"; the sections and fields are {', '.join(tops)}"

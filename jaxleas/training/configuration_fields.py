@@ -1,0 +1,93 @@
+"""The fields of a configuration model: their dotted names, the nearest to a typo, their help."""
+
+import difflib
+import types
+import typing
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a model, or of a model inside it.
+
+    Attributes:
+        name: dotted, as in `ppo.learning_rate`.
+        info: what pydantic knows of it.
+        section: the model it holds, if it holds one.
+    """
+
+    name: str
+    info: FieldInfo
+    section: type[BaseModel] | None
+
+
+def fields_of(model: type[BaseModel], prefix: str = "") -> Iterator[Field]:
+    """Yield every field of `model`, those of nested models after the field that holds them."""
+    for key, info in model.model_fields.items():
+        section = _section(info.annotation)
+        yield Field(prefix + key, info, section)
+        if section is not None:
+            yield from fields_of(section, f"{prefix}{key}.")
+
+
+def nearest(name: str, names: list[str]) -> str | None:
+    """Return the one of `names` that `name` was probably meant to be, if any is near.
+
+    The whole dotted name counts, and so does its last part: `learning_rate` at the top level
+    finds `ppo.learning_rate`.
+    """
+
+    def likeness(candidate: str) -> float:
+        whole = difflib.SequenceMatcher(None, name, candidate).ratio()
+        last = difflib.SequenceMatcher(None, _last(name), _last(candidate)).ratio()
+        # Between equally like last parts, the one in the same section.
+        return max(whole, 0.95 * last + 0.05 * whole)
+
+    best = max(names, key=likeness, default=None)
+    return best if best is not None and likeness(best) >= 0.6 else None
+
+
+def help_text(model: type[BaseModel], config: BaseModel) -> str:
+    """Return one paragraph a field: `--name`, its type, its value in `config`, its docstring."""
+    lines = ["Every field of the configuration can be set on the command line:", ""]
+    for field in fields_of(model):
+        if field.section is not None and _value(config, field.name) is not None:
+            continue
+        value = _value(config, field.name)
+        lines.append(f"  --{field.name} {_type_name(field.info.annotation)}  [{value}]")
+        if field.info.description:
+            lines.append("        " + " ".join(field.info.description.split()))
+    return "\n".join(lines)
+
+
+def _section(annotation: Any) -> type[BaseModel] | None:
+    """Return the model in `annotation`: itself, or the one in an optional or annotated type."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType, typing.Annotated):
+        found = [_section(inner) for inner in typing.get_args(annotation)]
+        return next((section for section in found if section is not None), None)
+    return None
+
+
+def _value(config: Any, name: str) -> Any:
+    for part in name.split("."):
+        config = getattr(config, part, None)
+    return config
+
+
+def _type_name(annotation: Any) -> str:
+    if typing.get_origin(annotation) is typing.Literal:
+        return "|".join(str(value) for value in typing.get_args(annotation))
+    if isinstance(annotation, type) and typing.get_origin(annotation) is None:
+        return annotation.__name__
+    return str(annotation).replace("typing.", "")
+
+
+def _last(name: str) -> str:
+    return name.rpartition(".")[2]

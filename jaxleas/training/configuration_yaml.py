@@ -1,0 +1,93 @@
+"""YAML as it should be: no repeated keys, `3e-4` is a number, and nothing but plain values."""
+
+import re
+from collections.abc import Hashable
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from jaxleas.types.errors import InputError
+
+
+class _Loader(yaml.SafeLoader):
+    """Plain values only; a key given twice is an error."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        seen: set[Any] = set()
+        for key_node, _ in node.value:
+            key = self.construct_object(key_node, deep=True)
+            if isinstance(key, Hashable) and key in seen:
+                line = key_node.start_mark.line + 1
+                raise yaml.constructor.ConstructorError(
+                    problem=f"the key '{key}' is given twice, again in line {line}"
+                )
+            seen.add(key if isinstance(key, Hashable) else repr(key))
+        return super().construct_mapping(node, deep)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes what `_Loader` reads: a string that looks like `3e-4` is quoted."""
+
+
+# YAML 1.1 takes `3e-4` for a string, since it has no dot; nobody who writes it means one.
+_EXPONENT = re.compile(r"^[-+]?[0-9][0-9_]*[eE][-+]?[0-9]+$")
+for _each in (_Loader, _Dumper):
+    _each.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+0123456789"))
+
+
+def parse_yaml(text: str) -> Any:
+    """Return the plain value that `text` states.
+
+    Raises:
+        ValueError: the text is not YAML, or gives one key twice.
+    """
+    try:
+        # A SafeLoader: it makes plain values and never runs anything.
+        return yaml.load(text, Loader=_Loader)
+    except (yaml.YAMLError, RecursionError, OverflowError, ValueError) as error:
+        raise ValueError(_problem(error)) from error
+
+
+def read_mapping(path: Path) -> dict[str, Any]:
+    """Return the mapping that a YAML file holds.
+
+    Raises:
+        InputError: the file is missing, unreadable, not YAML, empty, or not a mapping.
+    """
+    if not path.is_file():
+        raise InputError(f"the configuration file {path} does not exist")
+    try:
+        value = parse_yaml(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise InputError(f"{path} is not a usable YAML file: {error}") from error
+    if value is None:
+        raise InputError(f"{path} is empty: a configuration states at least one `key: value`")
+    if not isinstance(value, dict):
+        raise InputError(
+            f"{path} holds a {type(value).__name__}: a configuration is a mapping, `key: value`"
+        )
+    _require_text_keys(value, path)
+    return value
+
+
+def dump_yaml(value: dict[str, Any]) -> str:
+    """Return `value` as YAML text that `parse_yaml` reads back as it is."""
+    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
+
+
+def _require_text_keys(value: Any, path: Path) -> None:
+    for key, inner in value.items() if isinstance(value, dict) else ():
+        if not isinstance(key, str):
+            raise InputError(f"{path}: the key {key!r} is no name; write it in quotes")
+        _require_text_keys(inner, path)
+
+
+def _problem(error: Exception) -> str:
+    if isinstance(error, yaml.MarkedYAMLError):
+        mark = error.problem_mark
+        where = f" in line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        return f"{error.problem or error.context}{where}"
+    return " ".join(str(error).split())

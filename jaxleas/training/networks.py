@@ -1,0 +1,60 @@
+"""Actor and critic: Brax's PPO networks over one of two normalisers."""
+
+import jax.numpy as jnp
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.observation import affine_scaling
+from jaxleas.training.brax_blocks import (
+    ACTIVATION,
+    PPONetworks,
+    make_ppo_networks,
+    running_statistics,
+    specs,
+)
+from jaxleas.training.config import NetworkConfig
+
+# A constant input has no deviation: without floor and clip it explodes when it first moves.
+MIN_DEVIATION = 1e-2
+MAX_NORMALISED = 10.0
+
+Normaliser = running_statistics.NestedMeanStd
+
+
+def normalise(observation: Float[Array, "*batch size"], normaliser: Normaliser) -> Array:
+    """Return (observation - mean) / deviation, clipped to [-10, 10]."""
+    return running_statistics.normalize(observation, normaliser, max_abs_value=MAX_NORMALISED)
+
+
+def make_networks(config: NetworkConfig, env: SteeringEnv) -> PPONetworks:
+    """Return actor and critic for the task; their actions lie in [-1, 1]^4 by a tanh."""
+    return make_ppo_networks(
+        observation_size=env.layout.size,
+        action_size=env.action_size,
+        preprocess_observations_fn=normalise,
+        policy_hidden_layer_sizes=config.hidden,
+        value_hidden_layer_sizes=config.hidden,
+        activation=ACTIVATION[config.activation],
+    )
+
+
+def initial_normaliser(config: NetworkConfig, env: SteeringEnv) -> Normaliser:
+    """Return the normaliser before any data."""
+    if config.normaliser == "running":
+        return running_statistics.init_state(specs.Array((env.layout.size,), jnp.dtype("float32")))
+    mean, deviation = affine_scaling(
+        env.layout.size, env.height_range, env.config.limits.max_speed
+    )
+    return running_statistics.NestedMeanStd(mean=jnp.asarray(mean), std=jnp.asarray(deviation))
+
+
+def update_normaliser(
+    normaliser: Normaliser, observation: Float[Array, "*batch size"]
+) -> Normaliser:
+    """Return the normaliser after seeing a batch: only running statistics change."""
+    if isinstance(normaliser, running_statistics.RunningStatisticsState):
+        return running_statistics.update(
+            normaliser, observation, std_min_value=MIN_DEVIATION, std_max_value=1e6
+        )
+    return normaliser

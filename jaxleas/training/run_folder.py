@@ -1,0 +1,188 @@
+"""A run folder: everything one training leaves behind, held by one writer at a time.
+
+config.yaml       the resolved configuration
+provenance.json   format, versions, git revision, command, machine
+provenance.diff   uncommitted changes, if there were any
+metrics.jsonl     one JSON object a line
+tensorboard/      the same for TensorBoard
+checkpoints/      the last few full states and the best
+lock              held while a process writes
+"""
+
+import fcntl
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from jaxleas.files import read_json, write_json, write_text
+from jaxleas.training.provenance import collect_provenance
+from jaxleas.types.errors import InputError
+
+FORMAT = 1
+
+
+class RunFolder:
+    """One run's folder; make it with `create` or `open`, and `close` it to let others write.
+
+    Attributes:
+        path: the folder.
+    """
+
+    def __init__(self, path: Path, lock: int | None) -> None:
+        self.path = path
+        self._lock = lock
+
+    @classmethod
+    def create(cls, path: str | Path, config_yaml: str, command: Sequence[str]) -> Self:
+        """Make the folder of a new run and hold it for writing.
+
+        Args:
+            path: a folder that does not exist, or is empty.
+            config_yaml: the resolved configuration.
+            command: the command line that started the run.
+
+        Raises:
+            InputError: the folder is taken, in use, or cannot be written.
+        """
+        path = Path(path)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            _require_vacant(path)
+            lock = _take_lock(path)
+            try:
+                _require_vacant(path)  # again, now that nobody else can fill it
+                run = cls(path, lock)
+                run._write_records(config_yaml, command)
+            except BaseException:
+                os.close(lock)
+                raise
+        except OSError as error:
+            raise InputError(
+                f"cannot make the run folder {path}: {error.strerror or error}"
+            ) from error
+        return run
+
+    @classmethod
+    def open(cls, path: str | Path, writing: bool = False, needs_checkpoint: bool = True) -> Self:
+        """Open an existing run folder.
+
+        Args:
+            path: the folder.
+            writing: hold it, so that no other process can write (to resume); reading needs no hold.
+            needs_checkpoint: refuse a run that has saved no state yet.
+
+        Raises:
+            InputError: it is missing, not a run folder, half-written, of another format, or in use.
+        """
+        path = Path(path)
+        if not path.exists():
+            raise InputError(f"the run folder {path} does not exist")
+        if not path.is_dir():
+            raise InputError(f"{path} is a file; a run folder, as train.py writes it, would do")
+        lock = _take_lock(path) if writing and (path / "config.yaml").is_file() else None
+        try:
+            _require_run(path, needs_checkpoint)
+        except BaseException:
+            if lock is not None:
+                os.close(lock)
+            raise
+        return cls(path, lock)
+
+    @property
+    def config(self) -> Path:
+        """The resolved configuration."""
+        return self.path / "config.yaml"
+
+    @property
+    def checkpoints(self) -> Path:
+        """The folder of checkpoints."""
+        return self.path / "checkpoints"
+
+    @property
+    def metrics(self) -> Path:
+        """The metrics, one JSON object a line."""
+        return self.path / "metrics.jsonl"
+
+    def close(self) -> None:
+        """Let other processes write."""
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _write_records(self, config_yaml: str, command: Sequence[str]) -> None:
+        provenance, diff = collect_provenance(command)
+        write_text(self.config, config_yaml)
+        if diff:
+            write_text(self.path / "provenance.diff", diff)
+        # Last: its presence says that the folder is whole.
+        write_json(self.path / "provenance.json", {"format": FORMAT, **provenance})
+
+
+def _take_lock(path: Path) -> int:
+    """Return a file descriptor that holds the folder until it is closed or the process ends."""
+    try:
+        descriptor = os.open(path / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise InputError(f"cannot lock the run folder {path}: {error.strerror}") from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.ftruncate(descriptor, 0)
+        os.write(descriptor, f"{os.getpid()}\n".encode())
+    except BlockingIOError as error:
+        holder = os.pread(descriptor, 32, 0).decode().strip() or "unknown"
+        os.close(descriptor)
+        raise InputError(
+            f"the run folder {path} is in use by process {holder}; wait for it, stop it, or name "
+            "another --run-dir"
+        ) from error
+    except OSError as error:
+        os.close(descriptor)
+        raise InputError(f"cannot lock the run folder {path}: {error.strerror}") from error
+    return descriptor
+
+
+def _require_vacant(path: Path) -> None:
+    if (path / "config.yaml").exists() and (path / "lock").exists():
+        os.close(_take_lock(path))  # "in use" says more than "exists already"
+    if {entry.name for entry in path.iterdir()} - {"lock"}:
+        raise InputError(
+            f"{path} exists already and is not empty; go on with --resume {path}, or name another "
+            "--run-dir"
+        )
+
+
+def _require_run(path: Path, needs_checkpoint: bool) -> None:
+    records = [(path / name).is_file() for name in ("config.yaml", "provenance.json")]
+    if not any(records):
+        raise InputError(f"{path} is not a run folder: it holds no config.yaml")
+    if not all(records):
+        raise InputError(
+            f"the run folder {path} is half-written: its making was cut short; delete it and train "
+            "again"
+        )
+    provenance = read_json(path / "provenance.json")
+    found = provenance.get("format") if isinstance(provenance, dict) else None
+    if found != FORMAT:
+        version = provenance.get("jaxleas", "unknown") if isinstance(provenance, dict) else "?"
+        raise InputError(
+            f"the run folder {path} is in format {found}, written by jaxleas {version}; this "
+            f"version reads format {FORMAT}: use that version of jaxleas, or train again"
+        )
+    if needs_checkpoint and not any((path / "checkpoints").glob("step_*.npz")):
+        raise InputError(
+            f"the run folder {path} is half-written: it has no checkpoint yet; go on with "
+            f"train.py --resume {path}"
+        )

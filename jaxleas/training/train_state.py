@@ -1,0 +1,81 @@
+"""Everything a training run is, in one pytree: what a checkpoint saves and a resume restores."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+from jaxtyping import Float, Int, Key
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.state import SteeringState
+from jaxleas.envs.steering.world import World
+from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks
+from jaxleas.training.config import PpoConfig, RunConfig
+from jaxleas.training.networks import Normaliser, initial_normaliser
+
+
+@struct.dataclass
+class TrainState:
+    """The full state of a training run.
+
+    Attributes:
+        params: of actor and critic.
+        averaged: exponential average of the actor's parameters: what is judged and exported.
+        optimiser: Adam's moments and the learning rate's step count.
+        normaliser: of observations.
+        episode: of every robot.
+        observation: of every robot.
+        key: for everything random still to come.
+        update: policy updates done.
+    """
+
+    params: PPONetworkParams
+    averaged: Any
+    optimiser: optax.OptState
+    normaliser: Normaliser
+    episode: SteeringState
+    observation: Float[Array, "robots size"]
+    key: Key[Array, ""]
+    update: Int[Array, ""]
+
+
+def make_optimiser(config: PpoConfig) -> optax.GradientTransformation:
+    """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4)."""
+    gradient_steps = config.updates * config.epochs * config.minibatches
+    rate = optax.linear_schedule(
+        config.learning_rate, config.final_learning_rate, gradient_steps
+    )
+    return optax.chain(
+        optax.clip_by_global_norm(config.max_gradient_norm), optax.adam(rate, eps=1e-5)
+    )
+
+
+def initial_state(
+    config: RunConfig, env: SteeringEnv, world: World, networks: PPONetworks
+) -> TrainState:
+    """Return the state before the first update, from the run's seed alone."""
+    key = jax.random.key(config.seed)
+    key, policy_key, value_key, pool_key, take_key, stagger_key = jax.random.split(key, 6)
+    params = PPONetworkParams(
+        policy=networks.policy_network.init(policy_key),
+        value=networks.value_network.init(value_key),
+    )
+    count = config.ppo.environments
+    pool = draw_starts(env, world, pool_key, max(count, config.ppo.candidates))
+    episode, observation = take(pool, take_key, count)
+    # Episodes that began at different times end at different times: no wave of resets.
+    step = jax.random.randint(stagger_key, (count,), 0, config.env.episode_steps)
+    return TrainState(
+        params=params,
+        averaged=jax.tree.map(jnp.copy, params.policy),  # a copy: buffers are donated once
+        optimiser=make_optimiser(config.ppo).init(params),
+        normaliser=initial_normaliser(config.network, env),
+        episode=episode.replace(step=step),  # type: ignore[attr-defined]
+        observation=observation,
+        key=key,
+        update=jnp.int32(0),
+    )

@@ -1,0 +1,33 @@
+"""The terrains of a run: those trained on, and those held out for the examination."""
+
+from jaxleas.envs.steering.world import World, make_world
+from jaxleas.terrain.generator import generate_arena
+from jaxleas.terrain.seeds import HELD_OUT_SEED, MAX_TRAINING_SEED
+from jaxleas.training.config import RunConfig
+from jaxleas.types import InputError
+
+
+def training_world(config: RunConfig) -> World:
+    """Generate the arenas to train on.
+
+    Raises:
+        InputError: their seeds would leave the training range, or no arena has a link.
+    """
+    terrain = config.terrain
+    last = terrain.first_seed + terrain.arenas - 1
+    if last > MAX_TRAINING_SEED:
+        raise InputError(
+            f"terrain.first_seed + terrain.arenas reaches seed {last}, but seeds above"
+            f" {MAX_TRAINING_SEED} are kept for evaluation: give a smaller first_seed"
+        )
+    return _world(config, range(terrain.first_seed, last + 1))
+
+
+def held_out_world(config: RunConfig) -> World:
+    """Generate the arenas of the examination: the same generator, seeds never trained on."""
+    return _world(config, range(HELD_OUT_SEED, HELD_OUT_SEED + config.held_out.arenas))
+
+
+def _world(config: RunConfig, seeds: range) -> World:
+    arenas = [generate_arena(config.terrain.generator, seed) for seed in seeds]
+    return make_world(arenas, config.terrain.resolution)
