@@ -41,6 +41,7 @@ MOST_TILT = np.deg2rad(15.0)
 CLEARANCE = 0.02  # between the sole and the trunk's bottom [m]
 REACH_X, REACH_Y = 0.35, 0.30  # of the published reduced set [m]
 SIMPLIFIED_WITHIN = 0.005  # [m]
+SAMPLES_AT_ONCE = 200_000
 FOOT_HALF_SIZE = (0.10, 0.06)
 TRUNK = (
     Box((-0.2, -0.3, -0.628), (0.133, 0.3, 0.013)),
@@ -66,6 +67,14 @@ def sample_configurations(model: pin.Model, samples: int, seed: int) -> np.ndarr
     high = model.upperPositionLimit[columns]
     low[KNEE] = max(low[KNEE], LEAST_KNEE_BEND)
     return np.random.default_rng(seed).uniform(low, high, size=(samples, len(LEG)))
+
+
+def sample_soles(model: pin.Model, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Draw configurations and place their soles, some at a time to spare memory."""
+    configurations = sample_configurations(model, samples, seed)
+    chunks = np.array_split(configurations, max(1, samples // SAMPLES_AT_ONCE))
+    placed = [place_soles(model, chunk) for chunk in chunks]
+    return np.concatenate([p[0] for p in placed]), np.concatenate([p[1] for p in placed])
 
 
 def place_soles(model: pin.Model, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -140,14 +149,13 @@ def main() -> None:
     """Make the file and print what was measured."""
     parser = argparse.ArgumentParser(description="Make talos.json from the published URDF.")
     parser.add_argument("--out", type=Path, default=OUT)
-    parser.add_argument("--samples", type=int, default=1_000_000)
+    parser.add_argument("--samples", type=int, default=4_000_000)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
 
     model = pin.buildModelFromUrdf(str(find_urdf()))
     mass = round(float(sum(inertia.mass for inertia in model.inertias)), 3)
-    configurations = sample_configurations(model, arguments.samples, arguments.seed)
-    soles, normals = place_soles(model, configurations)
+    soles, normals = sample_soles(model, arguments.samples, arguments.seed)
     standing = soles[keep_standing(soles, normals)]
     hull = Polytope.from_points(standing)
     left = rounded(simplify(hull, standing[ConvexHull(standing).vertices]))

@@ -1,7 +1,9 @@
 """Reading: every failure is an InputError that names the file, the key and what would do."""
 
 import json
+import struct
 import zipfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,21 @@ import numpy as np
 from jaxleas.types.errors import InputError
 
 MAX_BYTES = 2**30  # a larger array file is a mistake or an attack, not a map
+
+# Whatever zipfile, zlib and numpy raise over bytes that are not what they claim to be.
+_DAMAGES = (
+    EOFError,
+    KeyError,
+    MemoryError,
+    NotImplementedError,
+    OSError,
+    OverflowError,
+    RuntimeError,
+    ValueError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 def read_json(path: str | Path) -> Any:
@@ -43,7 +60,7 @@ def read_npz(path: str | Path, required: tuple[str, ...]) -> dict[str, np.ndarra
             raise InputError(f"{path} unpacks to {size} bytes, more than the {MAX_BYTES} allowed")
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, MemoryError) as error:
+    except _DAMAGES as error:
         raise InputError(f"{path} is not a readable .npz file: {error}") from error
     missing = [name for name in required if name not in arrays]
     if missing:

@@ -1,10 +1,14 @@
 """Terrain: scenes of convex surfaces, height maps, random arenas, named scenes, importers."""
 
 from jaxleas.terrain.config import GeneratorConfig, TerrainConfig
+from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import Arena, generate_arena
 from jaxleas.terrain.height_map import HeightMap, read_height_map, write_height_map
+from jaxleas.terrain.importers import import_mesh, import_png, import_terrain
 from jaxleas.terrain.links import Link, Tile
+from jaxleas.terrain.mesh_scene import mesh_to_scene
 from jaxleas.terrain.rasterise import rasterise
+from jaxleas.terrain.scenarios import Scenario, circuit, dead_end, hole, transition, wall
 from jaxleas.terrain.scene import Scene, read_scene, write_scene
 from jaxleas.terrain.tiles import TileKind
 
@@ -13,14 +17,25 @@ __all__ = [
     "GeneratorConfig",
     "HeightMap",
     "Link",
+    "Scenario",
     "Scene",
     "TerrainConfig",
     "Tile",
     "TileKind",
+    "circuit",
+    "dead_end",
+    "draw_height_map",
     "generate_arena",
+    "hole",
+    "import_mesh",
+    "import_png",
+    "import_terrain",
+    "mesh_to_scene",
     "rasterise",
     "read_height_map",
     "read_scene",
+    "transition",
+    "wall",
     "write_height_map",
     "write_scene",
 ]

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, PositiveFloat
+from pydantic import AfterValidator, Field, PositiveFloat, model_validator
 
 from jaxleas.types.strict import Strict
 
@@ -70,6 +70,8 @@ class StairsConfig(Strict):
     """of a step [m]"""
     riser_max: PositiveFloat = 0.2
     """highest single step [m]: a robot of Talos's size climbs it"""
+    slope_max: PositiveFloat = 0.65
+    """climb over run of stairs between landings: 33 degrees, as steep as buildings have"""
     landing_probability: Probability = 0.3
     """that the steps do not fill the tile: fewer, higher ones between two flat landings"""
 
@@ -105,6 +107,12 @@ class GeneratorConfig(Strict):
     rubble: RubbleConfig = RubbleConfig()
     bridge: BridgeConfig = BridgeConfig()
     stairs: StairsConfig = StairsConfig()
+
+    @model_validator(mode="after")
+    def _odds_leave_room(self) -> "GeneratorConfig":
+        if self.stairs_probability + self.bridge_probability > 1.0 + 1e-9:
+            raise ValueError("stairs_probability and bridge_probability sum to more than 1")
+        return self
 
 
 TerrainConfig = GeneratorConfig

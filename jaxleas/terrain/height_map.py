@@ -90,7 +90,7 @@ def write_height_map(path: str | Path, height_map: HeightMap) -> None:
     write_npz(
         path,
         heights=height_map.heights.astype(np.float32),
-        resolution=np.float64(height_map.resolution),
+        resolution=np.array(height_map.resolution, dtype=np.float64),
         origin=np.array(height_map.origin, dtype=np.float64),
     )
 

@@ -17,7 +17,7 @@ CLOSING = 0.01
 and without it the seams between tiles and steps would be one-cell cracks of void."""
 BLOCK = 64
 """Polygons are cut into blocks of at most this many cells a side, so that memory stays small."""
-BATCH_CELLS = 1_000_000
+BATCH_CELLS, BATCH_POLYGONS = 1_000_000, 200_000
 
 
 def rasterise(
@@ -45,7 +45,10 @@ def rasterise_polygons(
     grow: float = 0.0,
     where: str = "scene",
 ) -> HeightMap:
-    """Return the height map of convex polygons, each grown by `grow` [m] a side."""
+    """Return the height map of convex polygons, each side moved outwards by `grow` [m].
+
+    A sharp corner grows no further than that beyond the polygon's bounding box.
+    """
     require_resolution(resolution, where)
     padded = _pad(polygons)
     low = np.floor((padded[..., :2].min(axis=(0, 1)) - margin) / resolution)
@@ -58,9 +61,10 @@ def rasterise_polygons(
         )
     origin = (low + 0.5) * resolution
     heights = np.full(int(rows) * int(columns), -np.inf, dtype=np.float32)
-    planes = _planes(padded, origin, resolution, grow)
-    for size, chosen, corner in _batches(planes, int(rows), int(columns)):
-        _paint(heights, int(columns), planes, size, chosen, corner)
+    for start in range(0, len(padded), BATCH_POLYGONS):
+        planes = _planes(padded[start : start + BATCH_POLYGONS], origin, resolution, grow)
+        for size, chosen, corner in _batches(planes, int(rows), int(columns)):
+            _paint(heights, int(columns), planes, size, chosen, corner)
     heights[np.isneginf(heights)] = np.nan
     return HeightMap(
         heights.reshape(int(rows), int(columns)), resolution, (float(origin[0]), float(origin[1]))

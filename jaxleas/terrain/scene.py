@@ -101,13 +101,13 @@ def _polygon(
     if not isinstance(value, list) or not all(isinstance(vertex, list) for vertex in value):
         raise InputError(problem)
     numbers = [number for vertex in value for number in vertex]
-    if not all(isinstance(number, int | float) and number is not True for number in numbers):
+    if any(isinstance(n, bool) or not isinstance(n, int | float) for n in numbers):
         raise InputError(problem)
     if len({len(vertex) for vertex in value}) > 1 or (value and len(value[0]) not in dimensions):
         raise InputError(problem)
     if not all(abs(number) < 1e6 for number in numbers):
         raise InputError(f"{path}: {key} '{name}' has a coordinate beyond 1000 km")
-    return np.array(value, dtype=np.float64).reshape(len(value), -1)
+    return np.array(value, dtype=np.float64).reshape(len(value), -1 if value else 3)
 
 
 def _refuse_misspelt_keys(path: str | Path, content: dict[str, Any]) -> None:

@@ -145,7 +145,8 @@ def stairs_tile(
     full = max(fewest, int(np.ceil(frame.size / depth[1] - 1e-9)))
     if rng.random() < config.stairs.landing_probability:
         count = int(rng.integers(fewest, full + 1))
-        length = min(frame.size, rng.uniform(count * depth[0], count * depth[1]))
+        shortest = max(count * depth[0], abs(climb) / config.stairs.slope_max)
+        length = min(frame.size, rng.uniform(shortest, max(shortest, count * depth[1])))
     else:
         count, length = int(rng.integers(full, most + 1)), frame.size
     before = rng.uniform(0.0, frame.size - length)

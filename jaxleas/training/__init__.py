@@ -1,0 +1,1 @@
+"""Training: networks, PPO over Brax, run folders, checkpoints and resume."""

@@ -149,5 +149,7 @@ def _hint(name: str, names: list[str], dashes: int = 0) -> str:
     close = nearest(name, names)
     if close is not None:
         return f"; perhaps you meant {'-' * dashes}{close}"
-    tops = [name for name in names if "." not in name]
-    return f"; the sections and fields are {', '.join(tops)}"
+    section = name.rpartition(".")[0]
+    prefix = f"{section}." if any(each.startswith(f"{section}.") for each in names) else ""
+    there = [each for each in names if each.startswith(prefix) and "." not in each[len(prefix) :]]
+    return f"; there are {', '.join(there)}"

@@ -38,18 +38,17 @@ def fields_of(model: type[BaseModel], prefix: str = "") -> Iterator[Field]:
 def nearest(name: str, names: list[str]) -> str | None:
     """Return the one of `names` that `name` was probably meant to be, if any is near.
 
-    The whole dotted name counts, and so does its last part: `learning_rate` at the top level
-    finds `ppo.learning_rate`.
+    The last part of the dotted name decides, so that `learning_rate` at the top level finds
+    `ppo.learning_rate`; between equals, the whole.
     """
 
-    def likeness(candidate: str) -> float:
-        whole = difflib.SequenceMatcher(None, name, candidate).ratio()
-        last = difflib.SequenceMatcher(None, _last(name), _last(candidate)).ratio()
-        # Between equally like last parts, the one in the same section.
-        return max(whole, 0.95 * last + 0.05 * whole)
+    def likeness(candidate: str) -> tuple[float, float]:
+        return _ratio(_last(name), _last(candidate)), _ratio(name, candidate)
 
-    best = max(names, key=likeness, default=None)
-    return best if best is not None and likeness(best) >= 0.6 else None
+    # A section is no answer to a wrong field in it.
+    others = [candidate for candidate in names if not name.startswith(f"{candidate}.")]
+    best = max(others, key=likeness, default=None)
+    return best if best is not None and likeness(best)[0] >= 0.6 else None
 
 
 def help_text(model: type[BaseModel], config: BaseModel) -> str:
@@ -84,9 +83,18 @@ def _value(config: Any, name: str) -> Any:
 def _type_name(annotation: Any) -> str:
     if typing.get_origin(annotation) is typing.Literal:
         return "|".join(str(value) for value in typing.get_args(annotation))
-    if isinstance(annotation, type) and typing.get_origin(annotation) is None:
-        return annotation.__name__
-    return str(annotation).replace("typing.", "")
+    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        return _type_name(inner[0])
+    if origin in (typing.Union, types.UnionType):
+        return "|".join(map(_type_name, inner))
+    if origin is not None:
+        return f"[{', '.join(map(_type_name, inner))}]"
+    return "..." if annotation is Ellipsis else getattr(annotation, "__name__", str(annotation))
+
+
+def _ratio(one: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, one, other).ratio()
 
 
 def _last(name: str) -> str:

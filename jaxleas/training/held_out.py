@@ -43,9 +43,7 @@ def make_examination(
         def advance(carry):
             step, episode, observation, reached, invalid = carry
             logits = networks.policy_network.apply(normaliser, policy, observation)
-            episode, outcome = env.step(
-                world.atlas, weights, episode, distribution.mode(logits)
-            )
+            episode, outcome = env.step(world.atlas, weights, episode, distribution.mode(logits))
             walking = ~(reached | invalid)
             reached = reached | (walking & outcome.reached)
             invalid = invalid | (walking & outcome.terminated)

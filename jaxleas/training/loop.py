@@ -33,6 +33,8 @@ class NonFiniteError(JaxleasError):
 class InterruptedRunError(JaxleasError):
     """The run was asked to stop and has saved everything done so far."""
 
+    exit_code = 130  # what a shell reports for Ctrl-C
+
 
 @dataclass
 class Trainer:
@@ -64,27 +66,25 @@ class Trainer:
         self.world = training_world(config)
         self.held_out = held_out_world(config)
         networks = make_networks(config.network, self.env)
-        self.train_step = jax.jit(
-            make_train_step(config, self.env, networks), donate_argnums=1
-        )
+        self.train_step = jax.jit(make_train_step(config, self.env, networks), donate_argnums=1)
         self.examine = jax.jit(make_examination(config, self.env, networks))
         begin = jax.jit(lambda world: initial_state(config, self.env, world, networks))
         self.fresh_state = lambda: begin(self.world)
 
     def policy(self, state: TrainState) -> SteeringPolicy:
         """Return the policy that is judged and exported: the averaged actor."""
-        return policy_of(
-            self.env, self.config.network.activation, state.normaliser, state.averaged
-        )
+        return policy_of(self.env, self.config.network.activation, state.normaliser, state.averaged)
 
 
-def train(config: RunConfig, run: RunFolder, resume: bool = False) -> SteeringPolicy:
+def train(config: RunConfig, run: RunFolder) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
+
+    A folder that holds checkpoints is gone on with from the newest, exactly as if the run had
+    never been interrupted.
 
     Args:
         config: of the run.
         run: folder held for writing.
-        resume: go on from the newest checkpoint, exactly as if never interrupted.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -95,7 +95,8 @@ def train(config: RunConfig, run: RunFolder, resume: bool = False) -> SteeringPo
     """
     trainer = Trainer(config)
     checkpoints = Checkpoints(run.checkpoints)
-    if resume:
+    resuming = bool(checkpoints.steps())
+    if resuming:
         like = jax.eval_shape(trainer.fresh_state)
         step, state, note = checkpoints.latest(like)
         best = note["best"]
@@ -104,7 +105,7 @@ def train(config: RunConfig, run: RunFolder, resume: bool = False) -> SteeringPo
         checkpoints.save(0, state, {"best": best})
     total = config.ppo.updates * config.ppo.batch
     with (
-        MetricsLog(run.path, truncate_after_step=step if resume else None) as log,
+        MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(total, start=step) as progress,
         Interruption() as interruption,
     ):

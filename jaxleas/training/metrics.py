@@ -41,7 +41,9 @@ class MetricsLog:
         spent = json.loads(kept[-1])["seconds"] if kept else 0.0
         self._start = time.monotonic() - spent
         self._stream = self.path.open("a", encoding="utf-8")
-        self._board = SummaryWriter(str(Path(folder) / "tensorboard"), purge_step=purge)
+        self._board = SummaryWriter(
+            str(Path(folder) / "tensorboard"), purge_step=purge, flush_secs=10
+        )
 
     def append(self, step: int, metrics: Mapping[str, float]) -> None:
         """Write one line; a number that is not finite is written as null.

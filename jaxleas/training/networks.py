@@ -43,9 +43,7 @@ def initial_normaliser(config: NetworkConfig, env: SteeringEnv) -> Normaliser:
     """Return the normaliser before any data."""
     if config.normaliser == "running":
         return running_statistics.init_state(specs.Array((env.layout.size,), jnp.dtype("float32")))
-    mean, deviation = affine_scaling(
-        env.layout.size, env.height_range, env.config.limits.max_speed
-    )
+    mean, deviation = affine_scaling(env.layout.size, env.height_range, env.config.limits.max_speed)
     return running_statistics.NestedMeanStd(mean=jnp.asarray(mean), std=jnp.asarray(deviation))
 
 

@@ -54,10 +54,14 @@ class SteeringPolicy:
 
     def action(self, observation: Float[Array, "*batch size"]) -> Float[Array, "*batch 4"]:
         """Return the mean action in [-1, 1]^4, as the environment's `step` takes it."""
-        normalised = (observation - self.mean) / self.deviation
+
+        def across(vector: Array) -> Array:  # the batch axes, written out
+            return vector.reshape((1,) * (observation.ndim - 1) + vector.shape)
+
+        normalised = (observation - across(self.mean)) / across(self.deviation)
         hidden = jnp.clip(normalised, -MAX_NORMALISED, MAX_NORMALISED)
         for index, (kernel, bias) in enumerate(zip(self.kernels, self.biases, strict=True)):
-            hidden = hidden @ kernel + bias
+            hidden = hidden @ kernel + across(bias)
             if index < len(self.kernels) - 1:
                 hidden = ACTIVATION[self.activation](hidden)
         return jnp.tanh(hidden[..., :ACTION_SIZE])  # the other outputs are exploration's

@@ -197,8 +197,8 @@ def _mirror_half(env: SteeringEnv, batch: types.Transition, key: Array) -> types
     """
     flip = jax.random.bernoulli(key, 0.5, (batch.reward.shape[1],))[None, :, None]
     permutation = env.layout.mirror_permutation
-    sign = jnp.asarray(env.layout.mirror_sign)
-    action_sign = jnp.asarray(MIRROR_ACTION_SIGN)
+    sign = jnp.asarray(env.layout.mirror_sign)[None, None]
+    action_sign = jnp.asarray(MIRROR_ACTION_SIGN)[None, None]
 
     def mirrored(observation: Array) -> Array:
         return jnp.where(flip, observation[..., permutation] * sign, observation)
@@ -206,7 +206,7 @@ def _mirror_half(env: SteeringEnv, batch: types.Transition, key: Array) -> types
     extras = batch.extras["policy_extras"]  # type: ignore[index]
     raw = extras["raw_action"]
     logits = extras["distribution_params"]
-    logit_sign = jnp.concatenate([action_sign, jnp.ones_like(action_sign)])
+    logit_sign = jnp.concatenate([action_sign, jnp.ones_like(action_sign)], axis=-1)
     return batch._replace(
         observation=mirrored(batch.observation),
         next_observation=mirrored(batch.next_observation),

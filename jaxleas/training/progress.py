@@ -38,6 +38,7 @@ class Progress:
         self._last = time.monotonic()
         self._last_line = self._last
         self._rate = 0.0
+        self._updates = 0
         self._line = ""
         plain = not self._stream.isatty() or any(map(os.environ.get, ("CI", "NO_COLOR")))
         self._live = None if plain else self._make_live()
@@ -51,8 +52,10 @@ class Progress:
         """
         now = time.monotonic()
         rate = (step - self._done) / max(now - self._last, 1e-9)
-        # Smoothed, because single updates jitter; the first counts whole.
-        self._rate = rate if self._rate == 0.0 else 0.8 * self._rate + 0.2 * rate
+        # Smoothed, because single updates jitter; but the first holds the compilation, so the
+        # second replaces it.
+        self._updates += 1
+        self._rate = rate if self._updates <= 2 else 0.8 * self._rate + 0.2 * rate
         self._done, self._last = step, now
         self._line = self._describe(values or {})
         if self._live is not None:

@@ -46,9 +46,7 @@ class TrainState:
 def make_optimiser(config: PpoConfig) -> optax.GradientTransformation:
     """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4)."""
     gradient_steps = config.updates * config.epochs * config.minibatches
-    rate = optax.linear_schedule(
-        config.learning_rate, config.final_learning_rate, gradient_steps
-    )
+    rate = optax.linear_schedule(config.learning_rate, config.final_learning_rate, gradient_steps)
     return optax.chain(
         optax.clip_by_global_norm(config.max_gradient_norm), optax.adam(rate, eps=1e-5)
     )

@@ -30,11 +30,12 @@ class State:
     counts: np.ndarray
     updates: int
     rate: float
+    strange: np.ndarray
 
 
 def make_state(seed: int) -> State:
     key = jax.random.key(seed)
-    params = {"w": jax.random.normal(key, (5, 3)), "b": jnp.array([-0.0, jnp.inf, jnp.nan])}
+    params = {"w": jax.random.normal(key, (5, 3)), "b": jnp.array([-0.0, 1e-40, 3e38])}
     optimiser = optax.adam(1e-3)
     updates, moments = optimiser.update(params, optimiser.init(params))
     return State(
@@ -47,6 +48,7 @@ def make_state(seed: int) -> State:
         counts=np.array([2**40 + seed]),
         updates=seed,
         rate=0.1 + 1e-17 * seed,
+        strange=np.array([np.nan, -np.inf, -0.0]),
     )
 
 
@@ -82,6 +84,7 @@ def test_everything_comes_back_to_the_bit(checkpoints: Checkpoints) -> None:
 
 def test_shapes_alone_are_enough_to_read_by(checkpoints: Checkpoints) -> None:
     state = make_state(3).replace(counts=jnp.arange(2), updates=jnp.int32(1), rate=jnp.zeros(()))
+    state = state.replace(strange=jnp.ones(2))
     checkpoints.save(0, state, {})
     assert bits(checkpoints.latest(jax.eval_shape(lambda: state))[1]) == bits(state)
 
@@ -99,14 +102,14 @@ def test_keeps_the_last_and_the_best(checkpoints: Checkpoints) -> None:
     scores = [0.1, 0.9, None, 0.9, float("nan"), 0.3]
     for step, score in enumerate(scores):
         checkpoints.save(step, {"x": jnp.array(step)}, {}, score)
-    assert checkpoints.steps() == [1, 4, 5]
-    assert checkpoints.best({"x": jnp.array(0)})[0] == 1
+    assert checkpoints.steps() == [3, 4, 5]
+    assert checkpoints.best({"x": jnp.array(0)})[0] == 3
     assert checkpoints.latest({"x": jnp.array(0)})[0] == 5
 
 
 def test_without_a_score_there_is_no_best(checkpoints: Checkpoints) -> None:
     checkpoints.save(0, {}, {})
-    with pytest.raises(InputError, match="no checkpoint .* has a score"):
+    with pytest.raises(InputError, match=r"no checkpoint .* has a score"):
         checkpoints.best({})
 
 
@@ -135,7 +138,7 @@ def test_another_state_is_refused(checkpoints: Checkpoints, like, expected: str)
 
 def test_an_empty_folder_is_refused(checkpoints: Checkpoints) -> None:
     for read in (checkpoints.latest, checkpoints.best):
-        with pytest.raises(InputError, match="no usable checkpoint .* there is none"):
+        with pytest.raises(InputError, match=r"no usable checkpoint .* there is none"):
             read({})
 
 
@@ -181,7 +184,7 @@ def test_when_all_are_damaged_each_is_named(checkpoints: Checkpoints) -> None:
 
 def test_another_format_is_refused(checkpoints: Checkpoints) -> None:
     checkpoints.folder.mkdir()
-    text = json.dumps({"format": 99}).encode()
+    text = json.dumps({"format": 99, "leaves": []}).encode()
     path = checkpoints.folder / "step_000000000001.npz"
     np.savez(path, manifest=np.frombuffer(text, np.uint8))
     with pytest.raises(InputError, match="is in format 99; this version reads 1"):
@@ -203,7 +206,7 @@ def test_a_full_disk_is_one_sentence_and_keeps_what_was(checkpoints, monkeypatch
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", no_space)
-    with pytest.raises(InputError, match="cannot write .*0002.npz: No space left on device"):
+    with pytest.raises(InputError, match=r"cannot write .*0002.npz: No space left on device"):
         checkpoints.save(2, {"x": jnp.array(2)}, {})
     assert checkpoints.latest({"x": jnp.array(0)})[0] == 1
     assert [path.name for path in checkpoints.folder.iterdir()] == ["step_000000000001.npz"]
@@ -229,11 +232,12 @@ while True:
 """
 
 
-def test_killed_at_any_moment_the_newest_can_be_restored(checkpoints: Checkpoints) -> None:
+@pytest.mark.parametrize("kills", [3, pytest.param(10, marks=pytest.mark.slow)])
+def test_killed_at_any_moment_the_newest_can_be_restored(checkpoints, kills: int) -> None:
     """SIGKILL in the middle of saves; what was reported as saved is there, whole, every time."""
     like = {"x": np.zeros(500_000, int), "y": np.zeros((40, 40), int)}
-    draw, step = random.Random(0), 0
-    for _ in range(10):
+    draw, step = random.Random(kills), 0
+    for _ in range(kills):
         process = subprocess.Popen(
             [sys.executable, "-c", SAVER, str(checkpoints.folder), str(step)],
             stdout=subprocess.PIPE,

@@ -62,9 +62,7 @@ def refusal(load, text: str, *overrides: str, **others: str) -> str:
     st.builds(
         Whole,
         seed=st.integers(-(2**40), 2**40),
-        rates=st.builds(
-            Rates, learning_rate=st.floats(1e-30, 1e30), discount=st.floats(0.0, 1.0)
-        ),
+        rates=st.builds(Rates, learning_rate=st.floats(1e-30, 1e30), discount=st.floats(0.0, 1.0)),
         world=st.builds(
             World, name=st.text(st.characters(codec="utf-8", exclude_categories=("C",)))
         ),
@@ -125,7 +123,7 @@ def test_mistakes_in_an_extended_file_name_that_file(load) -> None:
         ("rates: {lerning_rate: 1.0}", ["c.yaml", "rates.lerning_rate", "meant rates.learning_"]),
         ("learning_rate: 1.0", ["meant rates.learning_rate"]),
         ("optional: {sise: [1, 2]}", ["optional.sise", "meant optional.size"]),
-        ("zzzzqqq: 1", ["zzzzqqq", "the sections and fields are seed, rates"]),
+        ("zzzzqqq: 1", ["zzzzqqq", "there are seed, rates, world, opt"]),
         ("rates: {discount: 1.5}", ["c.yaml", "rates.discount is 1.5", "less than or equal to 1"]),
         ("rates: {discount: .nan}", ["rates.discount is nan", "finite"]),
         ("rates: {learning_rate: 0}", ["rates.learning_rate is 0", "greater than 0"]),
@@ -167,6 +165,7 @@ def test_a_mistake_in_a_file_is_one_sentence(load, text: str, expected: list[str
         (["--rates.batch", "10"], ["rates: batch 10 does not divide"]),
         (["--seed", "[1"], ["--seed [1 is not YAML"]),
         (["--seed", "abc"], ["command line: seed is 'abc'", "integer"]),
+        (["--world.zzz", "1"], ["no --world.zzz", "there are world.size, world.name"]),
         (["--sede", "1", "--seed"], ["--sede"]),
     ],
 )

@@ -104,9 +104,7 @@ class SteeringEnv:
 
         toward, distance = direction_to_goal(motion, self.goal(state))
         reached = distance <= config.goal_radius
-        gained = reward(
-            params, config, motion, command, toward, valid.astype(heights.dtype)
-        )
+        gained = reward(params, config, motion, command, toward, valid.astype(heights.dtype))
 
         age = state.goal_age + 1
         replaced = reached | (age >= _pick(state.plan.goal_steps, state.goal_index))
@@ -130,14 +128,12 @@ class SteeringEnv:
 def _pick(values: Array, index: Int[Array, "*batch"]) -> Array:
     """Return entry `index` along the goals' axis (the first after the batch axes)."""
     # A sum over GOALS masked entries: cheaper on every backend than a gather of one each.
-    mask = jnp.arange(GOALS) == index[..., None]
+    mask = jax.nn.one_hot(index, GOALS, dtype=bool)
     mask = mask.reshape(mask.shape + (1,) * (values.ndim - mask.ndim))
     return jnp.sum(jnp.where(mask, values, jnp.zeros_like(values)), axis=index.ndim)
 
 
-def select(
-    flag: Array, chosen: SteeringState, other: SteeringState
-) -> SteeringState:
+def select(flag: Array, chosen: SteeringState, other: SteeringState) -> SteeringState:
     """Return, robot by robot, `chosen` where the flag is set and `other` elsewhere."""
 
     def pick(left: Array, right: Array) -> Array:

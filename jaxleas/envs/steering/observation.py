@@ -18,10 +18,12 @@ def local_heights(
     points_in_root: Float[np.ndarray, "points 2"],
 ) -> Float[Array, "*batch points"]:
     """Return the terrain heights under a grid around the root, relative to the root [m]."""
-    points = jnp.asarray(points_in_root, dtype=jnp.float32)
+    shape = (*motion.yaw.shape, len(points_in_root))
+    ahead = jnp.broadcast_to(jnp.asarray(points_in_root[:, 0], dtype=jnp.float32), shape)
+    left = jnp.broadcast_to(jnp.asarray(points_in_root[:, 1], dtype=jnp.float32), shape)
     cosine, sine = jnp.cos(motion.yaw)[..., None], jnp.sin(motion.yaw)[..., None]
-    x = motion.position[..., 0, None] + cosine * points[:, 0] - sine * points[:, 1]
-    y = motion.position[..., 1, None] + sine * points[:, 0] + cosine * points[:, 1]
+    x = motion.position[..., 0, None] + cosine * ahead - sine * left
+    y = motion.position[..., 1, None] + sine * ahead + cosine * left
     heights = atlas.height_at(map_index, jnp.stack([x, y], axis=-1))
     return heights - motion.position[..., 2, None]
 

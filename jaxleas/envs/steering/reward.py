@@ -50,9 +50,7 @@ def reward(
     limits = config.limits
     error = motion.velocity.at[..., :2].add(-config.desired_speed * toward_goal)
     direction = -jnp.sum(error * error, axis=-1) / (2.0 * limits.max_speed) ** 2
-    heading = (
-        jnp.cos(motion.yaw) * toward_goal[..., 0] + jnp.sin(motion.yaw) * toward_goal[..., 1]
-    )
+    heading = jnp.cos(motion.yaw) * toward_goal[..., 0] + jnp.sin(motion.yaw) * toward_goal[..., 1]
     turn = -jnp.square(command[..., 3] / limits.max_turn_rate)
     square = jnp.sum(command[..., :3] * command[..., :3], axis=-1)
     return (

@@ -12,9 +12,10 @@ from jaxleas.envs.steering.world import World
 from jaxleas.terrain.atlas import VOID
 from jaxleas.types import RootMotion
 
-# The root stands this far above or below its walking height when an episode starts [m]: the policy
-# must be able to find its height, since users' starts are not exact either.
-HEIGHT_SPREAD = 0.05
+# How far below and above its walking height the root may stand when an episode starts [m]: over
+# level ground all of this is valid. A low root is what stairs down ask for, and a policy that has
+# never been low does not find out; users' starts are not exact either.
+HEIGHT_SPREAD = (-0.20, 0.07)
 FOREVER = 2**30  # steps
 
 
@@ -35,13 +36,12 @@ class StartPool:
     valid_count: Int[Array, ""]
 
 
-def draw_starts(
-    env: SteeringEnv, world: World, key: Key[Array, ""], count: int
-) -> StartPool:
+def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int) -> StartPool:
     """Draw candidates for starts: a random link, anywhere in its start area, any heading.
 
-    Every call draws anew, so no start is ever replayed. Candidates that violate the condition are
-    kept in the arrays (shapes are fixed) but never used.
+    Every call draws anew, so no start is ever replayed. Candidates that violate the condition, or
+    whose goal nobody could stand at (in a box, beside the ground), are kept in the arrays (shapes
+    are fixed) but never used.
 
     Args:
         env: the task.
@@ -55,7 +55,11 @@ def draw_starts(
     motion = _draw_motion(env, world, link, place_key, motion_key)
     state = env.start(motion, plan)
     heights = env.local_heights(world.atlas, plan.map_index, motion)
-    valid = env.condition(heights, motion) >= 0.0
+    arrival = _arrival(env, world, motion, plan)
+    arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
+    valid = (env.condition(heights, motion) >= 0.0) & (
+        env.condition(arrival_heights, arrival) >= 0.0
+    )
     return StartPool(
         state=state,
         observation=env.observe(heights, motion, env.goal(state)),
@@ -92,25 +96,42 @@ def _draw_motion(
     env: SteeringEnv, world: World, link: Array, place_key: Array, motion_key: Array
 ) -> RootMotion:
     horizontal = _uniform_in(world.start_area[link], place_key)
-    ground = world.atlas.height_at(world.map_index[link], horizontal[:, None, :])
-    # A root measured from the void would see the void at walking height and pass for valid.
-    ground = jnp.where(ground <= VOID, 0.0, ground)
     yaw_key, speed_key, height_key = jax.random.split(motion_key, 3)
     shape = (len(link),)
     yaw = jax.random.uniform(yaw_key, shape, minval=-jnp.pi, maxval=jnp.pi)
     # Half of the robots stand; the others walk the way they look (I sec. IV-B).
     speed = jnp.maximum(jax.random.uniform(speed_key, shape, minval=-1.0), 0.0)
     speed = speed * env.config.desired_speed
-    spread = jax.random.uniform(height_key, (*shape, 1), minval=-1.0) * HEIGHT_SPREAD
+    low, high = HEIGHT_SPREAD
+    spread = jax.random.uniform(height_key, (*shape, 1), minval=low, maxval=high)
     return RootMotion(
-        position=jnp.concatenate(
-            [horizontal, ground + env.robot.walking_height + spread], axis=-1
-        ),
+        position=_stand(env, world, world.map_index[link], horizontal).at[:, 2:].add(spread),
         velocity=jnp.stack(
             [speed * jnp.cos(yaw), speed * jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1
         ),
         yaw=yaw,
     )
+
+
+def _arrival(env: SteeringEnv, world: World, motion: RootMotion, plan: Plan) -> RootMotion:
+    """Return the robot standing at its first goal, heading the way it came."""
+    goal = plan.goals[:, 0]
+    offset = goal - motion.position[:, :2]
+    return RootMotion(
+        position=_stand(env, world, plan.map_index, goal),
+        velocity=jnp.zeros_like(motion.velocity),
+        yaw=jnp.arctan2(offset[:, 1], offset[:, 0]),
+    )
+
+
+def _stand(
+    env: SteeringEnv, world: World, map_index: Array, horizontal: Float[Array, "batch 2"]
+) -> Float[Array, "batch 3"]:
+    """Return root positions at walking height over the ground."""
+    ground = world.atlas.height_at(map_index, horizontal[:, None, :])
+    # A root measured from the void would see the void at walking height and pass for valid.
+    ground = jnp.where(ground <= VOID, 0.0, ground)
+    return jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
 
 
 def _draw_plan(env: SteeringEnv, world: World, link: Array, key: Array) -> Plan:

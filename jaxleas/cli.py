@@ -1,0 +1,123 @@
+"""The `jaxleas` command: finds a room's function, and makes its options from its signature.
+
+A room is imported only when one of its commands is called: `jaxleas --help` loads no JAX. argparse
+rather than tyro, which would have to import every room to show that help.
+"""
+
+import argparse
+import difflib
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.metadata import version
+from typing import NoReturn
+
+from jaxleas.cli_guard import UsageError, run_guarded
+from jaxleas.cli_options import add_options
+
+# What a person types -> (the room's module, its function, what it is for).
+COMMANDS = {
+    "terrain show": ("jaxleas.terrain.commands", "show", "draw a terrain as a picture"),
+    "terrain import": (
+        "jaxleas.terrain.commands",
+        "convert",
+        "make a height map of a mesh or image",
+    ),
+    "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
+    "evaluate": ("jaxleas.evaluation.commands", "evaluate", "judge a policy on terrains unseen"),
+    "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
+    "export": (
+        "jaxleas.export.commands",
+        "export",
+        "write a policy as ONNX and StableHLO, checked",
+    ),
+    "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
+}
+
+
+class _Parser(argparse.ArgumentParser):
+    """Answers a mistake with one sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def main() -> None:
+    """Run the `jaxleas` command."""
+    sys.exit(run_guarded(lambda: run(sys.argv[1:])))
+
+
+def run(arguments: Sequence[str]) -> None:
+    """Find the command that `arguments` begin with and call its function.
+
+    Raises:
+        UsageError: there is no such command or option, or one that is needed is missing.
+        JaxleasError: from the command.
+    """
+    words = [] if not arguments or arguments[0].startswith("-") else list(arguments[:2])
+    name = next((" ".join(words[:n]) for n in (2, 1) if " ".join(words[:n]) in COMMANDS), None)
+    if name is not None:
+        _call(name, arguments[len(name.split()) :])
+    elif "--version" in arguments:
+        print(f"jaxleas {version('jaxleas')}")
+    elif not words or _is_group_alone(arguments):
+        print(_overview())
+    else:
+        raise UsageError(_unknown(words))
+
+
+def _call(name: str, arguments: Sequence[str]) -> None:
+    module, function_name, _ = COMMANDS[name]
+    function = getattr(import_module(module), function_name)
+    parser = _Parser(
+        prog=f"jaxleas {name}",
+        allow_abbrev=False,  # an abbreviation may mean something else next year
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_options(parser, function)
+    given, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        options = [text for action in parser._actions for text in action.option_strings]
+        raise UsageError(
+            f"jaxleas {name} has no {unknown[0]}{_nearest(unknown[0], options)}; "
+            f"see jaxleas {name} --help"
+        )
+    function(**vars(given))
+
+
+def _is_group_alone(arguments: Sequence[str]) -> bool:
+    group = any(name.startswith(f"{arguments[0]} ") for name in COMMANDS)
+    return group and all(word in ("-h", "--help") for word in arguments[1:])
+
+
+def _overview() -> str:
+    lines = [f"  {name:18}{purpose}" for name, (_, _, purpose) in COMMANDS.items()]
+    return "\n".join(
+        [
+            "usage: jaxleas COMMAND ...   (options: jaxleas COMMAND --help)",
+            "",
+            *lines,
+            "",
+            "Policies are trained by  python train.py configs/leas_p1.yaml",
+        ]
+    )
+
+
+def _unknown(words: list[str]) -> str:
+    """Return a sentence about a command that does not exist, with the nearest that does."""
+    groups = {name.split()[0] for name in COMMANDS}
+    typed = " ".join(words if words[0] in groups else words[:1])
+    close = difflib.get_close_matches(" ".join(words), COMMANDS, n=1) or difflib.get_close_matches(
+        words[0], sorted(COMMANDS.keys() | groups), n=1
+    )
+    meant = f"perhaps you meant '{close[0]}'" if close else f"there are {', '.join(COMMANDS)}"
+    return f"there is no command '{typed}'; {meant}"
+
+
+def _nearest(option: str, options: list[str]) -> str:
+    close = difflib.get_close_matches(option.partition("=")[0], options, n=1)
+    return f", perhaps you meant {close[0]}" if close else ""
+
+
+if __name__ == "__main__":
+    main()

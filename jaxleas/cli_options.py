@@ -1,0 +1,78 @@
+"""Command-line options from a function's signature and docstring."""
+
+import argparse
+import inspect
+import types
+import typing
+from collections.abc import Callable, Sequence
+from typing import Any
+
+
+def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -> None:
+    """Add what `function` takes to `parser`.
+
+    The first parameter, if it may be given by position and has no default, becomes a positional
+    argument; every other parameter an option `--its-name`, required if it has no default.
+
+    Args:
+        parser: gets the options, and its description from the docstring's first line.
+        function: annotated with numbers, text, paths, booleans, literals, and optional or
+            sequence types of these.
+    """
+    text = inspect.getdoc(function) or ""
+    parser.description = text.partition("\n\n")[0]
+    helps = _argument_helps(text)
+    hints = typing.get_type_hints(function)
+    for index, parameter in enumerate(inspect.signature(function).parameters.values()):
+        name = parameter.name
+        options = _options_of_type(hints.get(name, str))
+        required = parameter.default is parameter.empty
+        options["help"] = helps.get(name, "").replace("%", "%%")
+        if index == 0 and required and parameter.kind is not parameter.KEYWORD_ONLY:
+            parser.add_argument(name, metavar=name.upper(), **options)
+            continue
+        if not required:
+            options["default"] = parameter.default
+            if parameter.default not in (None, False):
+                options["help"] += f" [{parameter.default}]".replace("%", "%%")
+        flag = "--" + name.strip("_").replace("_", "-")
+        parser.add_argument(flag, dest=name, required=required, **options)
+
+
+def _options_of_type(annotation: Any) -> dict[str, Any]:
+    """Return argparse's options for a parameter of this type."""
+    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if annotation is bool:
+        return {"action": argparse.BooleanOptionalAction}
+    if origin is typing.Literal:
+        return {"choices": inner, "type": type(inner[0])}
+    if origin is typing.Annotated:
+        return _options_of_type(inner[0])
+    if origin in (typing.Union, types.UnionType):
+        return _options_of_type(_plainest([each for each in inner if each is not type(None)]))
+    if origin is tuple and Ellipsis not in inner:
+        return {**_options_of_type(inner[0]), "nargs": len(inner)}
+    if inspect.isclass(origin) and issubclass(origin, Sequence):
+        return {**_options_of_type(inner[0]), "nargs": "+"}
+    return {"type": annotation if inspect.isclass(annotation) else str}
+
+
+def _plainest(members: list[Any]) -> Any:
+    """Return the member of a union that is to be read: for `str | Path` either does."""
+    return next((each for each in members if each is not str), str)
+
+
+def _argument_helps(docstring: str) -> dict[str, str]:
+    """Return the sentences under `Args:` in a docstring, by parameter."""
+    _, found, rest = docstring.partition("\nArgs:\n")
+    helps: dict[str, str] = {}
+    name = ""
+    for line in rest.splitlines() if found else ():
+        if line and not line.startswith(" "):
+            break  # the next section
+        if line.startswith("    ") and not line.startswith("     "):
+            name, _, text = line.strip().partition(":")
+            helps[name] = text.strip()
+        elif name and line.strip():
+            helps[name] += " " + line.strip()
+    return helps

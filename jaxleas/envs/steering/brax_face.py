@@ -1,0 +1,134 @@
+"""The steering task as a Brax `Env`, for Brax's own trainers and wrappers.
+
+Importing this module imports Brax's environments and with them its physics; nothing else in the
+package does.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from brax.envs.base import Env, State, Wrapper
+from brax.envs.wrappers.training import VmapWrapper
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.reward import RewardParams
+from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.world import World
+
+CANDIDATES = 8  # starts drawn at a reset; the first valid one is taken
+
+
+class BraxSteering(Env):
+    """One robot in a world, in Brax's terms.
+
+    `state.info` carries the random key of the next start, whether the episode was truncated, and
+    the margin of the condition; `state.pipeline_state` is the steering state.
+    """
+
+    def __init__(self, env: SteeringEnv, world: World) -> None:
+        self.steering = env
+        self.world = world
+        self._weights = RewardParams.of(env.config.reward)
+
+    def reset(self, rng: jax.Array) -> State:
+        """Draw terrain, start, heading and goal, and stand there."""
+        pool_key, take_key, next_key = jax.random.split(rng, 3)
+        pool = draw_starts(self.steering, self.world, pool_key, CANDIDATES)
+        state, observation = take(pool, take_key, 1)
+        state, observation = jax.tree.map(lambda leaf: leaf[0], (state, observation))
+        zero = jnp.float32(0.0)
+        info = {"next_start": next_key, "truncation": zero, "margin": zero}
+        return State(state, observation, zero, zero, {"reached": zero}, info)
+
+    def step(self, state: State, action: jax.Array) -> State:
+        """Advance one time step; `done` is set where the episode failed and where it is cut."""
+        after, outcome = self.steering.step(
+            self.world.atlas, self._weights, state.pipeline_state, action
+        )
+        truncation = outcome.truncated.astype(jnp.float32)
+        info = state.info | {"truncation": truncation, "margin": outcome.margin}
+        return state.replace(
+            pipeline_state=after,
+            obs=outcome.observation,
+            reward=outcome.reward,
+            done=jnp.maximum(outcome.terminated.astype(jnp.float32), truncation),
+            metrics={"reached": outcome.reached.astype(jnp.float32)},
+            info=info,
+        )
+
+    @property
+    def observation_size(self) -> int:
+        """Number of values in an observation."""
+        return self.steering.layout.size
+
+    @property
+    def action_size(self) -> int:
+        """Number of values in an action."""
+        return self.steering.action_size
+
+    @property
+    def backend(self) -> str:
+        """Brax asks for a physics backend; there is none here."""
+        return "kinematic"
+
+
+class FreshStartWrapper(Wrapper):
+    """Gives every finished episode a new start.
+
+    Brax's `AutoResetWrapper` puts each environment back to the one start it cached, for ever.
+    """
+
+    def reset(self, rng: jax.Array) -> State:
+        """Reset a batch of environments and count their episodes' steps."""
+        state = self.env.reset(rng)
+        return state.replace(info=state.info | {"steps": jnp.zeros(state.done.shape)})
+
+    def step(self, state: State, action: jax.Array) -> State:
+        """Step; where the episode before was over, step from a fresh start instead."""
+        state = self._restart(state)
+        steps = state.info["steps"] + 1.0
+        after = self.env.step(state, action)
+        return after.replace(info=after.info | {"steps": steps})
+
+    def _restart(self, state: State) -> State:
+        fresh = self.env.reset(state.info["next_start"])
+        done = state.done.astype(bool)
+
+        def pick(new: jax.Array, old: jax.Array) -> jax.Array:
+            flag = done.reshape(done.shape + (1,) * (old.ndim - done.ndim))
+            return jnp.where(flag, new, old)
+
+        info = dict(state.info)
+        for name, value in fresh.info.items():
+            info[name] = jax.vmap(jnp.where)(done, value, info[name])
+        info["steps"] = jnp.where(done, 0.0, info["steps"])
+        return state.replace(
+            pipeline_state=jax.tree.map(pick, fresh.pipeline_state, state.pipeline_state),
+            obs=pick(fresh.obs, state.obs),
+            info=info,
+        )
+
+
+def wrap_for_training(
+    env: BraxSteering,
+    episode_length: int = 0,
+    action_repeat: int = 1,
+    randomization_fn: Callable[..., Any] | None = None,
+) -> Wrapper:
+    """Return the batched environment; give this as `wrap_env_fn` to Brax's `ppo.train`.
+
+    Args:
+        env: the task; its configuration sets the episode's length.
+        episode_length: accepted for Brax and ignored.
+        action_repeat: must be 1.
+        randomization_fn: must be None: every start draws its own terrain.
+
+    Raises:
+        ValueError: something is asked for that the task has of its own.
+    """
+    del episode_length
+    if action_repeat != 1 or randomization_fn is not None:
+        raise ValueError("steering repeats no action and draws its own terrain at every reset")
+    return FreshStartWrapper(VmapWrapper(env))

@@ -1,0 +1,133 @@
+"""A policy, found by its path, judged on a suite by its name."""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.judge import judge
+from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
+from jaxleas.evaluation.stage import Stage
+from jaxleas.evaluation.starts import Grounds
+from jaxleas.evaluation.suites import SUITES, Suite, make_suite
+from jaxleas.guide.leas import leas
+from jaxleas.guide.loading import load_policy
+from jaxleas.guide.rb_lin import rb_lin
+from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.types.errors import InputError
+
+POLICY, BASELINE = "leas_p1", "rb_lin"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """What is judged.
+
+    Attributes:
+        path: it was loaded from.
+        env: the task it was trained for.
+        methods: the policy as a steering method first, then RB-Lin.
+    """
+
+    path: Path
+    env: SteeringEnv
+    methods: Mapping[str, SteeringMethod]
+
+
+def load_candidate(path: str | Path) -> Candidate:
+    """Load a run folder, a policy.npz or an .onnx file, with RB-Lin to compare with.
+
+    Raises:
+        InputError: there is no policy, or it cannot be used.
+    """
+    policy = load_policy(path)
+    env = SteeringEnv(policy.config)
+    methods = {
+        POLICY: leas(env, policy),
+        BASELINE: rb_lin(env.config.limits, env.config.desired_speed),
+    }
+    return Candidate(Path(path), env, methods)
+
+
+def examine(
+    candidate: Candidate,
+    suite: str | Suite,
+    starts: int | None = None,
+    seed: int = 0,
+    baseline: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+    grounds: Grounds | None = None,
+) -> Evaluation:
+    """Judge a candidate on a suite.
+
+    Args:
+        candidate: to judge.
+        suite: one of SUITES, or one made already.
+        starts: a cell; by default what the suite usually has.
+        seed: of scenes and starts, within the evaluation range.
+        baseline: judge RB-Lin beside it.
+        progress: told which cell is walked now.
+        grounds: that hold the suite's scenes, if made already.
+
+    Raises:
+        InputError: no such suite, or a number is out of range.
+    """
+    begin = time.perf_counter()
+    plan = make_suite(suite, starts, seed) if isinstance(suite, str) else suite
+    methods = {
+        name: method for name, method in candidate.methods.items() if baseline or name != BASELINE
+    }
+    cells = judge(candidate.env, methods, plan, progress, grounds)
+    return Evaluation(
+        suite=plan.name,
+        policy=str(candidate.path),
+        robot=candidate.env.config.robot,
+        seed=plan.seed,
+        created=now(),
+        seconds=round(time.perf_counter() - begin, 2),
+        cells=tuple(cells),
+    )
+
+
+def evaluation_file(run: Path, suite: str) -> Path:
+    """Return where a run folder keeps its evaluation on a suite."""
+    return run / "evaluation" / f"{suite}.json"
+
+
+def run_evaluations(
+    candidate: Candidate,
+    run: Path,
+    stage: Stage,
+    progress: Callable[[str], None] = lambda _: None,
+) -> list[Evaluation]:
+    """Return a run's evaluations on all suites: those it holds, and the others made and kept now.
+
+    One that is older than the policy, or cannot be read by this version, is made again.
+
+    Args:
+        candidate: the run's.
+        run: folder.
+        stage: with suites and terrain, shared with the report's pictures.
+        progress: told which cell is walked now.
+    """
+    evaluations = []
+    for name in SUITES:
+        path = evaluation_file(run, name)
+        evaluation = _kept(path, run / "policy.npz")
+        if evaluation is None:
+            suite = stage.suites.get(name)
+            grounds = None if suite is None else stage.grounds
+            evaluation = examine(candidate, suite or name, progress=progress, grounds=grounds)
+            write_evaluation(path, evaluation)
+        evaluations.append(evaluation)
+    return evaluations
+
+
+def _kept(path: Path, policy: Path) -> Evaluation | None:
+    if not path.is_file() or path.stat().st_mtime < policy.stat().st_mtime:
+        return None
+    try:
+        return read_evaluation(path)
+    except InputError:  # of another version, or damaged: it is ours to make again
+        return None

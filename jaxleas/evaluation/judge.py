@@ -1,0 +1,178 @@
+"""Walk a suite and count: who arrives, who falls, who stops."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.result_file import AreaResult, CellResult
+from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
+from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.guide.rollout import RollOut, roll_out
+from jaxleas.guide.steering_method import SteeringMethod
+
+AREA_NAMES = ("near", "far")
+DIGITS = 6  # of fractions and lengths in results: exact for a million starts
+
+
+@dataclass(frozen=True)
+class Walk:
+    """The roll-outs of one method from the starts of one cell, on the host.
+
+    Attributes:
+        starts: where they began and where they were sent.
+        position: of the roots [m]; constant after the end.
+        yaw: heading [rad].
+        valid: whether each configuration satisfies the condition.
+        end: index of each roll-out's last configuration.
+        reached: the goal, valid all the way.
+        invalid: an invalid configuration was met.
+    """
+
+    starts: Starts
+    position: Float[np.ndarray, "N T+1 3"]
+    yaw: Float[np.ndarray, "N T+1"]
+    valid: Bool[np.ndarray, "N T+1"]
+    end: Int[np.ndarray, " N"]
+    reached: Bool[np.ndarray, " N"]
+    invalid: Bool[np.ndarray, " N"]
+
+    def path(self, index: int) -> Float[np.ndarray, "T 3"]:
+        """Return the root positions of one roll-out up to its end [m]."""
+        return self.position[index, : self.end[index] + 1]
+
+
+def walk(
+    env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
+) -> Walk:
+    """Let every start of a cell walk, all at once."""
+    result: RollOut = roll_out(
+        env,
+        grounds.atlas,
+        starts.map_index,
+        method,
+        starts.motion,
+        starts.waypoints,
+        steps,
+        env.config.goal_radius,
+    )
+    return Walk(
+        starts=starts,
+        position=np.asarray(result.position),
+        yaw=np.asarray(result.yaw),
+        valid=np.asarray(result.valid),
+        end=np.asarray(result.end),
+        reached=np.asarray(result.reached),
+        invalid=np.asarray(result.invalid),
+    )
+
+
+def judge(
+    env: SteeringEnv,
+    methods: Mapping[str, SteeringMethod],
+    suite: Suite,
+    progress: Callable[[str], None] = lambda _: None,
+    grounds: Grounds | None = None,
+) -> list[CellResult]:
+    """Judge steering methods on a suite: the same starts for all of them.
+
+    Args:
+        env: says what is valid, how far the goal reaches and how long a time step is.
+        methods: by the name that results carry.
+        suite: to be walked.
+        progress: told, in words, which cell is walked now.
+        grounds: that hold the suite's scenes, if made already: suites that share them, and have
+            as many starts and steps, share one compilation a method.
+
+    Returns:
+        One result a cell and method, cells in the suite's order.
+    """
+    grounds = make_grounds(suite.cells) if grounds is None else grounds
+    results = []
+    for position, cell in enumerate(suite.cells):
+        starts = draw_starts(env, grounds, cell, suite.seed)
+        for name, method in methods.items():
+            progress(
+                f"{suite.name} {position + 1}/{len(suite.cells)}:"
+                f" {name} on {cell.name} at {cell.yaw:.0f} deg"
+            )
+            walked = walk(env, grounds, method, starts, suite.steps)
+            results.append(summarise(cell, name, walked, env.config.limits.time_step))
+    return results
+
+
+def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellResult:
+    """Count the outcomes of a cell and measure the paths of those that arrived.
+
+    Args:
+        cell: that was walked.
+        method: its name.
+        walked: the roll-outs.
+        time_step: between two configurations [s].
+    """
+    reached, invalid = walked.reached, walked.invalid
+    count = len(reached)
+    good = int(reached.sum()) if cell.expectation == "cross" else int((~invalid).sum())
+    low, high = wilson_interval(good, count)
+    length, straight = path_lengths(walked)
+    arrived = reached & (straight > 0.0)
+    fraction = _rounded(reached.mean()), _rounded(invalid.mean())
+    return CellResult(
+        name=cell.name,
+        yaw=cell.yaw,
+        method=method,
+        starts=count,
+        reached=fraction[0],
+        invalid=fraction[1],
+        stopped=_rounded(1.0 - fraction[0] - fraction[1]),
+        low=_rounded(low),
+        high=_rounded(high),
+        expectation=cell.expectation,
+        mean_time=_mean(walked.end[reached] * time_step),
+        mean_length=_mean(length[reached]),
+        detour=_mean(length[arrived] / straight[arrived]),
+        areas=_areas(walked),
+    )
+
+
+def path_lengths(
+    walked: Walk,
+) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, " N"]]:
+    """Return how far each root went, and the straight way through its waypoints [m].
+
+    The straight way goes from the start over all waypoints but the last to where the path ends:
+    a roll-out ends within the goal's radius, not on the goal.
+    """
+    position = walked.position.astype(np.float64)
+    steps = np.linalg.norm(np.diff(position, axis=1), axis=-1)
+    before_end = np.arange(steps.shape[1]) < walked.end[:, None]
+    last = position[np.arange(len(position)), walked.end]
+    between = np.asarray(walked.starts.waypoints, dtype=np.float64)[:, :-1]
+    corners = np.concatenate([position[:, :1], between, last[:, None]], axis=1)
+    straight = np.linalg.norm(np.diff(corners, axis=1), axis=-1).sum(axis=1)
+    return (steps * before_end).sum(axis=1), straight
+
+
+def _areas(walked: Walk) -> dict[str, AreaResult]:
+    area = walked.starts.area
+    if area.max() == 0:
+        return {}
+    return {
+        name: AreaResult(
+            starts=int((area == index).sum()),
+            reached=_rounded(walked.reached[area == index].mean()),
+            invalid=_rounded(walked.invalid[area == index].mean()),
+        )
+        for index, name in enumerate(AREA_NAMES)
+    }
+
+
+def _mean(values: Float[np.ndarray, " N"]) -> float | None:
+    return _rounded(values.mean()) if len(values) else None
+
+
+def _rounded(value: float | np.floating) -> float:
+    return abs(round(float(value), DIGITS))

@@ -1,0 +1,165 @@
+"""Where the robots of a cell stand before they walk: valid, at rest, at exactly the cell's yaw."""
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Float, Int
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.suites import Cell
+from jaxleas.terrain.atlas import VOID, Atlas, make_atlas
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.rasterise import rasterise
+from jaxleas.terrain.scenarios import Scenario
+from jaxleas.types import RootMotion
+from jaxleas.types.errors import InputError
+
+RESOLUTION = 0.04
+"""Of the height maps that are judged on [m]: as trained on."""
+ROUNDS = 200
+"""Draws after which a start area without a valid start is given up."""
+
+
+@dataclass(frozen=True)
+class Grounds:
+    """The scenes of a suite as height maps.
+
+    Attributes:
+        maps: one a scene.
+        atlas: the same on the device; one shape for all cells, so that roll-outs compile once.
+        index: of each scene's map, by the scene's identity.
+    """
+
+    maps: list[HeightMap]
+    atlas: Atlas
+    index: dict[int, int]
+
+
+def make_grounds(cells: Sequence[Cell], resolution: float = RESOLUTION) -> Grounds:
+    """Rasterise every scene of these cells once."""
+    scenarios = {id(each): each for cell in cells for each in cell.scenarios}
+    maps = [rasterise(each.scene, resolution) for each in scenarios.values()]
+    index = {identity: position for position, identity in enumerate(scenarios)}
+    return Grounds(maps, make_atlas(maps), index)
+
+
+@dataclass(frozen=True)
+class Starts:
+    """The starts of a cell.
+
+    Attributes:
+        motion: of the roots, at rest.
+        map_index: of each start's scene.
+        waypoints: to be reached in order, the goal last: x, y and the root height there [m].
+        area: which of its scene's start areas each start lies in (0 near, 1 far).
+    """
+
+    motion: RootMotion
+    map_index: Int[Array, " N"]
+    waypoints: Float[Array, "N W 3"]
+    area: Int[np.ndarray, " N"]
+
+
+def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> Starts:
+    """Draw the starts of a cell: uniform in the start areas, upright at walking height, at rest.
+
+    A start that violates the condition by itself is drawn again: it would be judged before it
+    could move.
+
+    Args:
+        env: says what is valid, and how high the robot walks.
+        grounds: the suite's height maps.
+        cell: of the suite.
+        seed: of the suite; every cell has a random stream of its own.
+
+    Raises:
+        InputError: a start area holds no valid start.
+    """
+    key = [seed, zlib.crc32(cell.name.encode()), round(cell.yaw * 1000) % 360_000]
+    rng = np.random.default_rng(key)
+    goals = _waypoints(env, grounds, cell, rng)
+    areas_each = len(cell.scenarios[0].start_areas)
+    number = np.arange(cell.starts)
+    area, scene = number % areas_each, number // areas_each % len(cell.scenarios)
+    chosen = [cell.scenarios[index] for index in scene]
+    rectangle = np.array([each.start_areas[k] for each, k in zip(chosen, area, strict=True)])
+    heading = np.array([crossing_direction(each) for each in cell.scenarios])[scene]
+    map_index = jnp.asarray([grounds.index[id(each)] for each in chosen], dtype=jnp.int32)
+    yaw = jnp.asarray(_wrap(heading + np.deg2rad(cell.yaw)), dtype=jnp.float32)
+
+    low, high = rectangle[:, 0::2], rectangle[:, 1::2]
+    horizontal, valid = np.array(low), np.zeros(cell.starts, dtype=bool)
+    motion = None
+    for _ in range(ROUNDS):
+        drawn = rng.uniform(low, high)
+        horizontal = np.where(valid[:, None], horizontal, drawn)
+        motion, judged = _stand(
+            env, grounds.atlas, map_index, jnp.asarray(horizontal, dtype=jnp.float32), yaw
+        )
+        valid = np.asarray(judged)
+        if valid.all():
+            break
+    if motion is None or not valid.all():
+        where = [round(float(each), 2) for each in rectangle[np.argmin(valid)]]
+        raise InputError(
+            f"no valid start in the area {where} of scene {cell.name!r} after {ROUNDS} draws"
+        )
+    return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area)
+
+
+def crossing_direction(scenario: Scenario) -> float:
+    """Return the heading [rad] from the start areas to where the robot is sent first."""
+    areas = np.array(scenario.start_areas).reshape(-1, 2, 2)
+    start = areas.mean(axis=(0, 2))
+    goal = np.array(scenario.waypoints[0]) if scenario.waypoints else _centre(scenario.goal_area)
+    return float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
+
+
+def _centre(area: Sequence[float]) -> Float[np.ndarray, " 2"]:
+    return np.array(area, dtype=np.float64).reshape(2, 2).mean(axis=1)
+
+
+def _wrap(angle: Float[np.ndarray, " N"]) -> Float[np.ndarray, " N"]:
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi
+
+
+def _waypoints(
+    env: SteeringEnv, grounds: Grounds, cell: Cell, rng: np.random.Generator
+) -> Float[np.ndarray, "scenes W 3"]:
+    """Return one goal a scene, drawn in its goal area, or the scene's own waypoints."""
+    points = []
+    for scenario in cell.scenarios:
+        area = np.array(scenario.goal_area)
+        drawn = [rng.uniform(area[0::2], area[1::2])]
+        horizontal = np.array(scenario.waypoints or drawn, dtype=np.float64)
+        height_map = grounds.maps[grounds.index[id(scenario)]]
+        ground = height_map.height_at(horizontal).astype(np.float64)
+        # A goal in the void has no height: ask for that of the start.
+        start = height_map.height_at(_centre(scenario.start_areas[0])[None])
+        ground = np.where(np.isnan(ground), start, ground)
+        points.append(np.column_stack([horizontal, ground + env.robot.walking_height]))
+    longest = max(len(each) for each in points)
+    # Scenes with fewer waypoints repeat their last: it is reached as soon as it is asked for.
+    return np.stack([np.vstack([each, *[each[-1:]] * (longest - len(each))]) for each in points])
+
+
+@partial(jax.jit, static_argnums=0)
+def _stand(
+    env: SteeringEnv,
+    atlas: Atlas,
+    map_index: Int[Array, " N"],
+    horizontal: Float[Array, "N 2"],
+    yaw: Float[Array, " N"],
+) -> tuple[RootMotion, Array]:
+    """Return roots at walking height above the ground, and whether they are valid there."""
+    ground = atlas.height_at(map_index, horizontal[:, None, :])
+    position = jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
+    motion = RootMotion(position=position, velocity=jnp.zeros_like(position), yaw=yaw)
+    margin = env.condition(env.local_heights(atlas, map_index, motion), motion)
+    return motion, (margin >= 0.0) & (ground[:, 0] > VOID)

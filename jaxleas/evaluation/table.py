@@ -1,0 +1,106 @@
+"""Results as a table to read, beside the thesis's."""
+
+from collections.abc import Sequence
+
+from jaxleas.evaluation.result_file import CellResult, Evaluation
+
+THESIS_METHOD = "leas_p1"
+# T table 3.3: fraction of 100 starts that reach the goal, by cell and heading [deg].
+THESIS = {
+    ("rubble", 0.0): 1.00,
+    ("bridge", 0.0): 1.00,
+    ("stairs_down", 0.0): 1.00,
+    ("stairs_up", 0.0): 1.00,
+    ("rubble", 180.0): 1.00,
+    ("bridge", 180.0): 0.87,
+    ("stairs_down", 180.0): 1.00,
+    ("stairs_up", 180.0): 0.97,
+}
+METHOD_TITLES = {"leas_p1": "LEAS-P1", "rb_lin": "RB-Lin"}
+HEADINGS = (
+    "cell",
+    "yaw",
+    "method",
+    "reached",
+    "invalid",
+    "stopped",
+    "95 % interval",
+    "near",
+    "far",
+    "time",
+    "length",
+    "detour",
+    "thesis",
+)
+
+
+def cell_title(name: str) -> str:
+    """Return a cell's name for people."""
+    return name.replace("_", " ")
+
+
+def method_title(name: str) -> str:
+    """Return a method's name for people."""
+    return METHOD_TITLES.get(name, name)
+
+
+def percent(fraction: float | None, digits: int = 1) -> str:
+    """Return a fraction in percent; nothing but 1 is ever rounded up to 100."""
+    if fraction is None:
+        return "-"
+    scale = 10**digits
+    value = round(100.0 * fraction * scale) / scale
+    if fraction < 1.0 and value >= 100.0:
+        value = 100.0 - 1.0 / scale
+    return f"{value:.{digits}f} %"
+
+
+def rows(evaluation: Evaluation) -> list[tuple[str, ...]]:
+    """Return the cells of the table as text, one row a cell and method."""
+    return [_row(evaluation.suite, cell) for cell in evaluation.cells]
+
+
+def _row(suite: str, cell: CellResult) -> tuple[str, ...]:
+    near, far = cell.areas.get("near"), cell.areas.get("far")
+    quoted = suite == "transitions" and cell.method == THESIS_METHOD
+    return (
+        cell_title(cell.name),
+        f"{cell.yaw:.0f}°",
+        method_title(cell.method),
+        percent(cell.reached),
+        percent(cell.invalid),
+        percent(cell.stopped),
+        f"{percent(cell.low)[:-2]} to {percent(cell.high)}",
+        percent(near.reached if near else None),
+        percent(far.reached if far else None),
+        "-" if cell.mean_time is None else f"{cell.mean_time:.1f} s",
+        "-" if cell.mean_length is None else f"{cell.mean_length:.2f} m",
+        "-" if cell.detour is None else f"{cell.detour:.2f}",
+        percent(THESIS.get((cell.name, cell.yaw)), 0) if quoted else "-",
+    )
+
+
+def plain_table(evaluation: Evaluation) -> str:
+    """Return the table of an evaluation for a terminal."""
+    expected = {cell.expectation for cell in evaluation.cells}
+    wanted = "stop and stay valid" if expected == {"stop"} else "reach the goal, always valid"
+    starts = evaluation.cells[0].starts if evaluation.cells else 0
+    title = f"{evaluation.suite}: {starts} starts a cell, seed {evaluation.seed}; must {wanted}"
+    body = rows(evaluation)
+    # Columns that say nothing in this suite would only push the others off the line.
+    kept = [column for column in range(len(HEADINGS)) if any(row[column] != "-" for row in body)]
+    return "\n".join([title, *_align([HEADINGS, *body], kept)])
+
+
+def _align(lines: Sequence[Sequence[str]], kept: Sequence[int]) -> list[str]:
+    widths = {column: max(len(line[column]) for line in lines) for column in kept}
+    texts = [
+        "  ".join(
+            line[column].ljust(widths[column])
+            if HEADINGS[column] in ("cell", "method")
+            else line[column].rjust(widths[column])
+            for column in kept
+        ).rstrip()
+        for line in lines
+    ]
+    return [texts[0], "-" * max(map(len, texts)), *texts[1:]]

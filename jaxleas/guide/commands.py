@@ -1,0 +1,154 @@
+"""The function behind `jaxleas rollout`."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from jaxleas.types import InputError
+
+if TYPE_CHECKING:
+    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.guide.files import Reason
+    from jaxleas.guide.rollout import RollOut
+    from jaxleas.guide.steering_method import SteeringMethod
+    from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.types import Query
+
+MAX_CONFIGURATIONS = 20_000_000  # of all paths together: about a gigabyte while they are walked
+
+
+def rollout(
+    policy: Path,
+    *,
+    terrain: Path,
+    queries: Path,
+    out: Path,
+    steps: int = 800,
+    resolution: float | None = None,
+    steering: Literal["leas", "lin"] = "leas",
+    picture: Path | None = None,
+    up: Literal["x", "y", "z"] = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> None:
+    """Walk a policy on any terrain and write its guide paths.
+
+    Args:
+        policy: a run folder, a policy.npz, or an .onnx.
+        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        queries: .json list of {position, yaw, velocity, goal}.
+        out: the guide paths, .npz.
+        steps: most configurations after the first of a path.
+        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
+        steering: leas = the policy; lin = RB-Lin, which knows no terrain, under its conditions.
+        picture: draw the paths from above (.png, .svg, .pdf).
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means no ground.
+    """
+    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
+    from jaxleas.guide.leas import leas
+    from jaxleas.guide.loading import load_policy
+    from jaxleas.guide.picture import draw_guide_paths, require_picture
+    from jaxleas.guide.rb_lin import rb_lin
+    from jaxleas.guide.rollout import paths
+    from jaxleas.terrain.importers import import_terrain
+
+    asked = read_queries(queries)
+    _require_sizes(steps, len(asked), out)
+    if picture is not None:
+        require_picture(picture)
+    walker = load_policy(policy)
+    ground = import_terrain(
+        terrain,
+        resolution=resolution,
+        up=up,
+        scale=scale,
+        z_min=z_min,
+        z_max=z_max,
+        zero_is_void=zero_is_void,
+    )
+    require_on_terrain(queries, asked, ground)
+    env = SteeringEnv(walker.config)
+    config = env.config
+    method = (
+        leas(env, walker) if steering == "leas" else rb_lin(config.limits, config.desired_speed)
+    )
+    walked = walk_queries(env, method, ground, asked, steps)
+    guide_paths = paths(walked, config.limits.time_step)
+    reasons = reasons_of(walked)
+    write_guide_paths(out, guide_paths, reasons)
+    if picture is not None:
+        draw_guide_paths(picture, ground, guide_paths, reasons, asked)
+    count = Counter(reasons)
+    print(
+        f"{out}: of {len(asked)} queries {count['reached']} reached their goal,"
+        f" {count['invalid']} ended invalid, {count['stopped']} stopped before it"
+        + (f"; drawn in {picture}" if picture is not None else "")
+    )
+
+
+def walk_queries(
+    env: "SteeringEnv",
+    method: "SteeringMethod",
+    terrain: "HeightMap",
+    queries: "Sequence[Query]",
+    steps: int,
+) -> "RollOut":
+    """Return the roll-out of queries on one height map."""
+    import jax.numpy as jnp
+
+    from jaxleas.guide.rollout import roll_out
+    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.types import RootMotion
+
+    yaw = np.array([query.yaw for query in queries])
+    start = RootMotion(
+        position=jnp.asarray([query.position for query in queries], jnp.float32),
+        velocity=jnp.asarray([query.velocity for query in queries], jnp.float32),
+        yaw=jnp.asarray((yaw + np.pi) % (2 * np.pi) - np.pi, jnp.float32),
+    )
+    # The height wanted at the goal: walking height; over the void, that of the start.
+    goals = np.array([query.goal for query in queries])
+    height = terrain.height_at(goals) + env.robot.walking_height
+    height = np.where(np.isnan(height), [query.position[2] for query in queries], height)
+    waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
+    return roll_out(
+        env,
+        make_atlas([terrain]),
+        jnp.zeros(len(queries), jnp.int32),
+        method,
+        start,
+        jnp.asarray(waypoints, jnp.float32),
+        steps,
+        env.config.goal_radius,
+    )
+
+
+def reasons_of(rollout: "RollOut") -> "list[Reason]":
+    """Return why each walk ended."""
+    reached, invalid = np.asarray(rollout.reached), np.asarray(rollout.invalid)
+    return [
+        "reached" if arrived else "invalid" if failed else "stopped"
+        for arrived, failed in zip(reached, invalid, strict=True)
+    ]
+
+
+def _require_sizes(steps: int, count: int, out: Path) -> None:
+    if steps < 1:
+        raise InputError(f"--steps is {steps}; a path takes at least 1 step, 800 is usual")
+    if count * (steps + 1) > MAX_CONFIGURATIONS:
+        raise InputError(
+            f"{count} queries of {steps} steps make more than {MAX_CONFIGURATIONS} configurations:"
+            " give fewer steps, or fewer queries at once"
+        )
+    if Path(out).suffix != ".npz":
+        raise InputError(f"--out {out}: guide paths are written as .npz")

@@ -1,0 +1,129 @@
+"""A policy in an ONNX file, run by onnxruntime on the host."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import jax
+import numpy as np
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
+from jaxleas.envs.steering.motion import integrate
+from jaxleas.guide.onnx_metadata import INPUT, OUTPUT, read_config
+from jaxleas.types import InputError, RootMotion
+
+MAX_BYTES = 2**28  # a policy of a quarter of a gigabyte is a mistake
+OPSETS = range(13, 24)  # of the operators a policy consists of, as onnxruntime knows them
+
+
+@dataclass(frozen=True)
+class OnnxPolicy:
+    """Observation in physical units to command in physical units, as `SteeringPolicy` has it.
+
+    Attributes:
+        config: of the environment it was trained in, from the file's metadata.
+        metadata: of the file.
+    """
+
+    config: SteeringConfig
+    metadata: dict[str, str]
+    _session: Any = field(repr=False, compare=False)
+
+    def __call__(self, observation: Float[np.ndarray, "*batch size"]) -> np.ndarray:
+        """Return acceleration in the root frame [m/s^2] and turn rate [rad/s]."""
+        observation = np.asarray(observation, np.float32)
+        flat = observation.reshape(-1, observation.shape[-1])
+        (command,) = self._session.run([OUTPUT], {INPUT: flat})
+        return command.reshape(*observation.shape[:-1], ACTION_SIZE)
+
+
+def read_onnx_policy(path: str | Path) -> OnnxPolicy:
+    """Read a policy from an ONNX file that `jaxleas export` wrote.
+
+    Raises:
+        InputError: the file is missing, damaged, no policy, or of another observation layout.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path} does not exist" if not path.is_dir() else f"{path} is a folder")
+    if path.stat().st_size > MAX_BYTES:
+        raise InputError(f"{path} is larger than the {MAX_BYTES} bytes a policy may have")
+    return onnx_policy_from_bytes(path.read_bytes(), path)
+
+
+def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
+    """Return the policy in an ONNX file's content; `path` is for messages.
+
+    Raises:
+        InputError: as `read_onnx_policy`.
+    """
+    _check_graph(content, path)
+    session = _session(content, path)
+    metadata = dict(session.get_modelmeta().custom_metadata_map)
+    config = read_config(path, metadata)
+    size = layout_named(config.observation).size
+    ports = [(each.name, each.type, each.shape[1:]) for each in session.get_inputs()]
+    ports += [(each.name, each.type, each.shape[1:]) for each in session.get_outputs()]
+    wanted = [(INPUT, "tensor(float)", [size]), (OUTPUT, "tensor(float)", [ACTION_SIZE])]
+    if ports != wanted:
+        raise InputError(
+            f"{path} takes and gives {ports}, where a policy of layout {config.observation} takes"
+            f" {INPUT} [batch, {size}] and gives {OUTPUT} [batch, {ACTION_SIZE}], float32"
+        )
+    return OnnxPolicy(config, metadata, session)
+
+
+def _check_graph(content: bytes, path: object) -> None:
+    import onnx
+
+    try:
+        model = onnx.load_model_from_string(content)
+        onnx.checker.check_model(model, full_check=True)
+    except Exception as error:  # protobuf's and onnx's own, with no common base
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
+        raise InputError(f"{path} is not a usable ONNX file: {reason}") from error
+    opsets = {each.domain: each.version for each in model.opset_import}
+    if set(opsets) - {"", "ai.onnx"} or opsets.get("", opsets.get("ai.onnx")) not in OPSETS:
+        raise InputError(
+            f"{path} uses operators {opsets}; standard operators of opset {OPSETS.start} to"
+            f" {OPSETS.stop - 1} would do"
+        )
+
+
+def _session(content: bytes, path: object) -> Any:
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 4  # its complaints come as exceptions; nothing on the terminal
+    try:
+        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    except Exception as error:
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
+        raise InputError(f"{path} cannot be run by onnxruntime: {reason}") from error
+
+
+class OnnxLeas:
+    """LEAS with the policy of an ONNX file: a steering method that is driven from the host."""
+
+    runs_on_host: Literal[True] = True
+
+    def __init__(self, env: SteeringEnv, policy: OnnxPolicy):
+        self.policy = policy
+        limits = env.config.limits
+        self._observe = jax.jit(env.observe)
+        self._integrate = jax.jit(lambda motion, command: integrate(motion, command, limits))
+
+    def __call__(
+        self,
+        heights_in_root: Float[Array, "*batch points"],
+        motion: RootMotion,
+        goal: Float[Array, "*batch 3"],
+    ) -> RootMotion:
+        """Return the root motion one time step later; the goal's height is not looked at."""
+        observation = self._observe(heights_in_root, motion, goal[..., :2])
+        return self._integrate(motion, self.policy(np.asarray(observation)))

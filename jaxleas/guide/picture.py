@@ -1,0 +1,75 @@
+"""A top view of guide paths in the style of T figures 3.14-3.17."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jaxleas.files import atomic_path
+from jaxleas.guide.files import Reason
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import GuidePath, InputError, Query
+
+STARTS: dict[Reason, str] = {"reached": "gold", "invalid": "black", "stopped": "white"}
+PATH, GOAL = "tab:blue", "red"
+ARROWS_EVERY = 15  # configurations
+MOST_PATHS = 200  # more would hide one another
+
+
+def require_picture(path: str | Path) -> None:
+    """Refuse a picture's name whose type cannot be drawn."""
+    if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
+
+
+def draw_guide_paths(
+    path: str | Path,
+    terrain: HeightMap,
+    guide_paths: Sequence[GuidePath],
+    reasons: Sequence[Reason],
+    queries: Sequence[Query],
+) -> None:
+    """Draw paths (blue), headings (arrows), goals (red) and starts by outcome over the terrain.
+
+    Args:
+        path: of the picture (.png, .svg, .pdf).
+        terrain: that was walked on.
+        guide_paths: one for each query; the first 200 are drawn.
+        reasons: why each ended.
+        queries: that were asked.
+
+    Raises:
+        InputError: the picture cannot be written, or is of an unknown type.
+    """
+    from jaxleas.terrain.draw import draw_height_map
+
+    require_picture(path)
+    ax = draw_height_map(terrain)
+    shown = list(zip(guide_paths, reasons, queries, strict=True))[:MOST_PATHS]
+    for guide_path, _, _ in shown:
+        ax.plot(*guide_path.position[:, :2].T, color=PATH, linewidth=1.2, zorder=3)
+        at = slice(0, None, ARROWS_EVERY)
+        heading = np.cos(guide_path.yaw[at]), np.sin(guide_path.yaw[at])
+        ax.quiver(
+            *guide_path.position[at, :2].T,
+            *heading,
+            angles="xy",
+            scale_units="xy",
+            scale=7.0,  # arrows of 1 / 7 m
+            width=0.0025,
+            zorder=4,
+        )
+    for reason, colour in STARTS.items():
+        starts = [query.position[:2] for _, each, query in shown if each == reason]
+        if starts:
+            x, y = np.array(starts).T
+            ax.scatter(
+                x, y, s=26, c=colour, edgecolors="black", linewidths=0.7, label=reason, zorder=5
+            )
+    goals = np.array([query.goal for _, _, query in shown])
+    ax.scatter(*goals.T, s=30, c=GOAL, edgecolors="black", linewidths=0.5, label="goal", zorder=6)
+    ax.legend(loc="upper right", fontsize="small", framealpha=0.9)
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, dpi=110)

@@ -1,0 +1,40 @@
+"""What a steering method is: local terrain, root motion and goal in, the next root motion out."""
+
+from typing import Literal, Protocol
+
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.types import RootMotion
+
+
+class SteeringMethod(Protocol):
+    """Moves roots one time step towards their goals (T sec. 3.1.1); `roll_out` calls it.
+
+    A method that is a pytree (a `flax.struct` dataclass) may change its arrays without being
+    compiled again; any other callable works too and is compiled once for each object.
+    """
+
+    def __call__(
+        self,
+        heights_in_root: Float[Array, "*batch points"],
+        motion: RootMotion,
+        goal: Float[Array, "*batch 3"],
+    ) -> RootMotion:
+        """Return the root motion one time step later; pure JAX, for any batch.
+
+        Args:
+            heights_in_root: the environment's local heights, relative to the root [m].
+            motion: of the root now.
+            goal: in the world: x, y, and the root's height wanted there [m].
+        """
+        ...
+
+
+class HostSteeringMethod(SteeringMethod, Protocol):
+    """A steering method that computes outside JAX; `roll_out` drives it from a Python loop."""
+
+    @property
+    def runs_on_host(self) -> Literal[True]:
+        """Tell `roll_out` that this method cannot be traced."""
+        ...

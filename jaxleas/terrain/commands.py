@@ -1,0 +1,135 @@
+"""The functions behind `jaxleas terrain show`, `import` and `generate`."""
+
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.draw import draw_height_map
+from jaxleas.terrain.generator import generate_arena
+from jaxleas.terrain.height_map import HeightMap, write_height_map
+from jaxleas.terrain.importers import import_terrain
+from jaxleas.terrain.meshes import Up
+from jaxleas.terrain.scene import write_scene
+from jaxleas.types.errors import InputError
+
+
+def show(
+    file: Path,
+    *,
+    out: Path | None = None,
+    resolution: float | None = None,
+    up: Up = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> Path:
+    """Draw a terrain file from above, and say its size.
+
+    Args:
+        file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        out: the picture; by default NAME_view.png in the current folder.
+        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means no ground.
+    """
+    picture = Path(f"{file.stem}_view.png") if out is None else out
+    height_map = import_terrain(
+        file,
+        resolution=resolution,
+        up=up,
+        scale=scale,
+        z_min=z_min,
+        z_max=z_max,
+        zero_is_void=zero_is_void,
+    )
+    draw_height_map(height_map, picture, title=file.name)
+    print(f"{file}: {describe(height_map)}\ndrawn in {picture}")
+    return picture
+
+
+def convert(
+    file: Path,
+    *,
+    out: Path,
+    resolution: float | None = None,
+    up: Up = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> Path:
+    """Import a mesh, an image or a scene as a height map (.npz).
+
+    Args:
+        file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        out: the height map, .npz.
+        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means no ground.
+    """
+    _require_suffix(out, ".npz")
+    height_map = import_terrain(
+        file,
+        resolution=resolution,
+        up=up,
+        scale=scale,
+        z_min=z_min,
+        z_max=z_max,
+        zero_is_void=zero_is_void,
+    )
+    write_height_map(out, height_map)
+    print(f"{file}: {describe(height_map)}\nwritten to {out}")
+    return out
+
+
+def generate(*, out: Path, seed: int = 0, rows: int = 5, columns: int = 5) -> Path:
+    """Generate a random arena of tiles as a scene (.json).
+
+    Args:
+        out: the scene, .json.
+        seed: of the arena; the same seed gives the same arena.
+        rows: tiles of 2 m along y.
+        columns: tiles of 2 m along x.
+    """
+    _require_suffix(out, ".json")
+    if seed < 0:
+        raise InputError(f"seed {seed} must not be negative")
+    try:
+        config = GeneratorConfig(rows=rows, columns=columns)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise InputError(f"{first['loc'][0]} = {first['input']}: {first['msg']}") from error
+    arena = generate_arena(config, seed)
+    write_scene(out, arena.scene)
+    kinds = sorted({link.kind for link in arena.links})
+    print(
+        f"{rows} x {columns} tiles, {len(arena.scene.surfaces)} surfaces, "
+        f"{len(arena.links)} links ({', '.join(kinds) or 'none'})\nwritten to {out}"
+    )
+    return out
+
+
+def describe(height_map: HeightMap) -> str:
+    """Return a map's size, cells, heights and void in one line."""
+    x_min, x_max, y_min, y_max = height_map.extent
+    rows, columns = height_map.shape
+    low, high = np.nanmin(height_map.heights), np.nanmax(height_map.heights)
+    return (
+        f"x {x_min:.2f} to {x_max:.2f} m, y {y_min:.2f} to {y_max:.2f} m, "
+        f"{columns} x {rows} cells of {height_map.resolution:g} m, "
+        f"heights {low:.2f} to {high:.2f} m, {100.0 * height_map.void_fraction:.1f} % void"
+    )
+
+
+def _require_suffix(path: Path, suffix: str) -> None:
+    if path.suffix.lower() != suffix:
+        raise InputError(f"{path}: the name of this file must end in {suffix}")

@@ -1,0 +1,141 @@
+"""Real terrains from files: meshes, images, height maps and scenes, all to a height map."""
+
+from pathlib import Path
+
+import numpy as np
+
+from jaxleas.terrain.height_map import (
+    MAX_CELLS,
+    HeightMap,
+    read_height_map,
+    require_resolution,
+    require_usable,
+)
+from jaxleas.terrain.meshes import SUFFIXES, Up, read_triangles
+from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION, rasterise, rasterise_polygons
+from jaxleas.terrain.scene import read_scene
+from jaxleas.types.errors import InputError
+
+SEAM = 1e-3
+"""Triangles are grown by this much [m]: neighbours in real meshes do not always quite meet."""
+MESH_MARGIN = 0.1
+"""Width of void around an imported mesh [m]."""
+WHITE = 65535
+
+
+def import_terrain(
+    path: str | Path,
+    *,
+    resolution: float | None = None,
+    up: Up = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> HeightMap:
+    """Return the height map of a terrain file, read by its suffix.
+
+    Args:
+        path: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        resolution: edge of a cell [m]; 0.04 by default for meshes and scenes, needed for .png.
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means that there is no ground.
+
+    Raises:
+        InputError: the suffix is unknown, the file unusable, or an option missing.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix == ".npz":
+        height_map = read_height_map(path)
+        if resolution is not None and not np.isclose(resolution, height_map.resolution):
+            raise InputError(
+                f"{path} is a map of {height_map.resolution:g} m cells; "
+                f"it cannot be read at a resolution of {resolution:g} m"
+            )
+        return height_map
+    if suffix == ".json":
+        return rasterise(read_scene(path), resolution or DEFAULT_RESOLUTION)
+    if suffix in SUFFIXES:
+        return import_mesh(path, resolution or DEFAULT_RESOLUTION, up, scale)
+    if suffix == ".png":
+        if resolution is None or z_min is None or z_max is None:
+            raise InputError(f"{path} is an image: say its resolution, z_min and z_max [m]")
+        return import_png(path, resolution, z_min, z_max, zero_is_void)
+    known = ", ".join((".npz", ".json", *SUFFIXES, ".png"))
+    raise InputError(f"{path}: unknown terrain file type '{suffix}'; known are {known}")
+
+
+def import_mesh(
+    path: str | Path, resolution: float = DEFAULT_RESOLUTION, up: Up = "z", scale: float = 1.0
+) -> HeightMap:
+    """Return the height map of a mesh: the highest triangle above each cell centre.
+
+    Closed bodies work, their tops hide their bottoms; vertical faces have no height. What is
+    thinner than a cell, a handrail say, can fall between cell centres: take a finer resolution.
+
+    Args:
+        path: an STL or OBJ file.
+        resolution: edge of a cell [m].
+        up: the mesh's axis that points up.
+        scale: metres a unit of the file.
+
+    Raises:
+        InputError: the file is unreadable, is not a terrain, or makes too large a map.
+    """
+    require_resolution(resolution, path)
+    triangles = read_triangles(path, up, scale)
+    height_map = rasterise_polygons(triangles, resolution, MESH_MARGIN, SEAM, where=str(path))
+    require_usable(height_map.heights, resolution, path)
+    return height_map
+
+
+def import_png(
+    path: str | Path, resolution: float, z_min: float, z_max: float, zero_is_void: bool = False
+) -> HeightMap:
+    """Return the height map of a 16-bit grey image: black is z_min, white is z_max, north up.
+
+    Args:
+        path: a 16-bit greyscale PNG file; its last row is the map's first.
+        resolution: edge of a pixel [m].
+        z_min: height of value 0 [m].
+        z_max: height of value 65535 [m].
+        zero_is_void: whether value 0 means that there is no ground.
+
+    Raises:
+        InputError: the file is unreadable, of another mode, too large, or z_min >= z_max.
+    """
+    require_resolution(resolution, path)
+    if not (np.isfinite([z_min, z_max]).all() and z_min < z_max):
+        raise InputError(f"{path}: z_min {z_min:g} m must be below z_max {z_max:g} m")
+    values = np.flipud(_grey_values(Path(path)))
+    heights = (z_min + (z_max - z_min) * (values / WHITE)).astype(np.float32)
+    if zero_is_void:
+        heights[values == 0] = np.nan
+    if min(heights.shape) < 2:
+        raise InputError(
+            f"{path} has {heights.shape[1]} x {heights.shape[0]} pixels; at least 2 x 2"
+        )
+    require_usable(heights, resolution, path)
+    return HeightMap(heights, float(resolution), (0.5 * resolution, 0.5 * resolution))
+
+
+def _grey_values(path: Path) -> np.ndarray:
+    from PIL import Image
+
+    if not path.is_file():
+        raise InputError(f"{path} does not exist" if not path.exists() else f"{path} is a folder")
+    try:
+        with Image.open(path, formats=("PNG",)) as image:
+            width, height = image.size
+            if width * height > MAX_CELLS:
+                raise InputError(f"{path} has {width} x {height} pixels, more than {MAX_CELLS}")
+            if not image.mode.startswith("I"):
+                raise InputError(
+                    f"{path} is a PNG of mode {image.mode}; heights need 16-bit grey (mode I;16)"
+                )
+            return np.asarray(image).astype(np.int64)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise InputError(f"{path} is not a readable PNG image: {error}") from error

@@ -1,0 +1,90 @@
+"""Reading STL and OBJ meshes as triangles, and refusing what is not a terrain."""
+
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.types.errors import InputError
+
+Up = Literal["x", "y", "z"]
+SUFFIXES = (".stl", ".obj")
+MAX_TRIANGLES = 5_000_000
+MAX_BYTES = 2**30
+MIN_EXTENT, MAX_EXTENT = 0.5, 1000.0
+"""Accepted horizontal sizes of a terrain [m]."""
+AXES: dict[str, tuple[int, int, int]] = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
+"""The mesh axes that become x, y and z: a rotation, for each axis that may point up."""
+
+
+def read_triangles(
+    path: str | Path, up: Up = "z", scale: float = 1.0
+) -> Float[np.ndarray, "N 3 3"]:
+    """Return the triangles of a mesh file, z up, in metres; degenerate ones are left out.
+
+    Args:
+        path: an STL (binary or text) or OBJ file.
+        up: the mesh's axis that points up.
+        scale: metres a unit of the file, 0.001 for millimetres.
+
+    Raises:
+        InputError: the file cannot be read, or it is not a terrain.
+    """
+    if up not in AXES:
+        raise InputError(f"up is '{up}'; it must be one of x, y, z")
+    if not 0.0 < scale < np.inf:
+        raise InputError(f"scale {scale:g} must be a positive number of metres a unit")
+    triangles = _load(Path(path))[..., AXES[up]] * scale
+    if not len(triangles):
+        raise InputError(f"{path} has no triangles: is it a mesh with faces?")
+    if len(triangles) > MAX_TRIANGLES:
+        raise InputError(
+            f"{path} has {len(triangles)} triangles, more than the {MAX_TRIANGLES} accepted; "
+            f"decimate it first"
+        )
+    if not np.isfinite(triangles).all():
+        raise InputError(f"{path} has a vertex that is not a finite number")
+    return _terrain_only(path, triangles)
+
+
+def _load(path: Path) -> Float[np.ndarray, "N 3 3"]:
+    import trimesh  # takes half a second: only those who import a mesh pay for it
+
+    if not path.is_file():
+        raise InputError(f"{path} does not exist" if not path.exists() else f"{path} is a folder")
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"{path} is not a mesh this package reads: {', '.join(SUFFIXES)}")
+    if path.stat().st_size > MAX_BYTES:
+        raise InputError(f"{path} is larger than {MAX_BYTES} bytes; decimate it first")
+    options: dict[str, Any] = {"process": False}
+    if path.suffix.lower() == ".obj":
+        options |= {"skip_materials": True, "group_material": False}
+    try:
+        mesh = trimesh.load_mesh(path, file_type=path.suffix[1:].lower(), **options)
+        return np.asarray(mesh.triangles, dtype=np.float64).reshape(-1, 3, 3)
+    except MemoryError as error:
+        raise InputError(f"{path} does not fit into memory") from error
+    except Exception as error:  # trimesh raises many kinds on a broken file
+        reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
+        raise InputError(f"{path} is not a readable {path.suffix[1:]} mesh: {reason}") from error
+
+
+def _terrain_only(
+    path: str | Path, triangles: Float[np.ndarray, "N 3 3"]
+) -> Float[np.ndarray, "N 3 3"]:
+    spans = np.ptp(triangles.reshape(-1, 3)[:, :2], axis=0)
+    if spans.max() < MIN_EXTENT or spans.max() > MAX_EXTENT:
+        raise InputError(
+            f"{path} spans {spans[0]:.4g} x {spans[1]:.4g} m; a terrain is {MIN_EXTENT:g} to "
+            f"{MAX_EXTENT:g} m wide; are its units metres (see scale)?"
+        )
+    edges = triangles[:, 1:] - triangles[:, :1]
+    area = 0.5 * np.cross(edges[:, 0], edges[:, 1])
+    size = np.linalg.norm(area, axis=1)
+    proper = size > 1e-12
+    if not proper.any():
+        raise InputError(f"{path} is degenerate: every triangle has zero area")
+    if not (np.abs(area[proper, 2]) > 1e-3 * size[proper]).any():
+        raise InputError(f"{path} is not a terrain: it has only vertical faces; is up right?")
+    return triangles[proper]

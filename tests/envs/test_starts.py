@@ -1,0 +1,94 @@
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv, draw_starts, restart_where, take
+from jaxleas.envs.steering.world import make_world
+from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.generator import generate_arena
+
+from .worlds import flat, height_map, world_of
+
+
+@pytest.fixture(scope="module")
+def env():
+    return SteeringEnv(SteeringConfig())
+
+
+@pytest.fixture(scope="module")
+def arena_world():
+    config = GeneratorConfig(rows=4, columns=4)
+    return make_world([generate_arena(config, seed) for seed in range(4)], resolution=0.04)
+
+
+def test_every_start_is_valid_and_its_goal_can_be_stood_at(env, arena_world):
+    pool = draw_starts(env, arena_world, jax.random.key(0), 512)
+    assert 0 < int(pool.valid_count) < 512  # some candidates fall: the check is not vacuous
+    state, observation = take(pool, jax.random.key(1), 400)
+    heights = env.local_heights(arena_world.atlas, state.plan.map_index, state.motion)
+    assert np.all(env.condition(heights, state.motion) >= 0.0)
+    np.testing.assert_array_equal(
+        observation, env.observe(heights, state.motion, env.goal(state))
+    )
+    goal_ground = arena_world.atlas.height_at(state.plan.map_index, env.goal(state)[:, None])
+    assert np.all(goal_ground > -100.0)
+
+
+def test_starts_lie_in_start_areas_and_goals_in_goal_areas(env):
+    world = world_of(height_map(flat), height_map(flat, half_size=3.0))
+    state, _ = take(draw_starts(env, world, jax.random.key(2), 256), jax.random.key(3), 256)
+    link = state.plan.map_index
+    for place, area in (
+        (state.motion.position[:, :2], world.start_area[link]),
+        (env.goal(state), world.goal_area[link]),
+    ):
+        assert np.all((place >= area[:, 0::2]) & (place <= area[:, 1::2]))
+    assert len(np.unique(link)) == 2
+
+
+def test_everything_about_a_start_varies(env, arena_world):
+    state, _ = take(draw_starts(env, arena_world, jax.random.key(4), 256), jax.random.key(5), 256)
+    assert len(np.unique(state.plan.map_index)) == 4
+    for values in (state.motion.position[:, 0], state.motion.yaw, env.goal(state)[:, 0]):
+        assert len(np.unique(values)) > 100
+    assert np.ptp(state.motion.yaw) > 6.0
+    still = np.linalg.norm(state.motion.velocity, axis=1) == 0.0
+    assert 0.3 < np.mean(still) < 0.7
+
+
+def test_no_start_is_replayed(env, arena_world):
+    """Brax's own auto-reset restores one cached start for ever; ours never does."""
+    done = jnp.ones(64, dtype=bool)
+    state, observation = take(
+        draw_starts(env, arena_world, jax.random.key(6), 256), jax.random.key(7), 64
+    )
+    seen = []
+    for number in range(5):
+        pool_key, take_key = jax.random.split(jax.random.key(100 + number))
+        pool = draw_starts(env, arena_world, pool_key, 256)
+        state, observation = restart_where(done, state, observation, pool, take_key)
+        seen.append(np.asarray(state.motion.position))
+    for earlier, later in zip(seen, seen[1:], strict=False):
+        assert not np.any(np.all(earlier[:, None] == later[None], axis=-1))
+
+
+def test_only_those_who_are_done_start_anew(env, arena_world):
+    pool = draw_starts(env, arena_world, jax.random.key(8), 256)
+    state, observation = take(pool, jax.random.key(9), 8)
+    state = state.replace(step=jnp.full(8, 17, dtype=jnp.int32))
+    done = jnp.array([True, False] * 4)
+    after, after_observation = restart_where(done, state, observation, pool, jax.random.key(10))
+    np.testing.assert_array_equal(after.step, np.where(done, 0, 17))
+    np.testing.assert_array_equal(after.motion.position[1::2], state.motion.position[1::2])
+    np.testing.assert_array_equal(after_observation[1::2], observation[1::2])
+
+
+def test_nobody_starts_over_the_void(env):
+    """A root measured from the void would see it at walking height: such starts must fall."""
+    half = height_map(lambda x, y: np.where(x < -2.0, 0.0, np.nan))
+    world = world_of(half)
+    world = world.replace(goal_area=world.start_area)
+    state, _ = take(draw_starts(env, world, jax.random.key(11), 512), jax.random.key(12), 256)
+    assert np.all(state.motion.position[:, 0] < -1.8)
+    assert np.all(np.abs(state.motion.position[:, 2]) < 2.0)

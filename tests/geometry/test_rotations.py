@@ -1,0 +1,62 @@
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.geometry import rotate_by_yaw, rotate_to_root, rotate_to_world, wrap_angle
+
+
+@pytest.fixture(autouse=True)
+def _strict_ranks():
+    with jax.numpy_rank_promotion("raise"):
+        yield
+
+
+@pytest.fixture
+def yaws():
+    return jnp.asarray(np.random.default_rng(0).uniform(-7.0, 7.0, 64), jnp.float32)
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_turning_there_and_back_is_nothing(yaws, dimensions):
+    vectors = jax.random.normal(jax.random.key(1), (64, 5, dimensions))
+    back = rotate_to_root(rotate_to_world(vectors, yaws), yaws)
+    np.testing.assert_allclose(back, vectors, atol=1e-5)
+
+
+def test_turns_add_up(yaws):
+    vectors = jax.random.normal(jax.random.key(2), (64, 3))
+    twice = rotate_by_yaw(rotate_by_yaw(vectors, yaws), yaws)
+    np.testing.assert_allclose(twice, rotate_by_yaw(vectors, 2 * yaws), atol=1e-5)
+
+
+def test_lengths_and_heights_are_kept(yaws):
+    vectors = jax.random.normal(jax.random.key(3), (64, 3))
+    turned = rotate_by_yaw(vectors, yaws)
+    np.testing.assert_allclose(
+        jnp.linalg.norm(turned, axis=-1), jnp.linalg.norm(vectors, axis=-1), rtol=1e-5
+    )
+    np.testing.assert_array_equal(turned[:, 2], vectors[:, 2])
+
+
+def test_a_quarter_turn_takes_x_to_y():
+    turned = rotate_by_yaw(jnp.array([1.0, 0.0]), jnp.array(np.pi / 2))
+    np.testing.assert_allclose(turned, [0.0, 1.0], atol=1e-6)
+
+
+def test_one_robot_is_a_batch_of_one(yaws):
+    vectors = jax.random.normal(jax.random.key(4), (64, 7, 2))
+    alone = rotate_to_world(vectors[3], yaws[3])
+    np.testing.assert_allclose(alone, rotate_to_world(vectors, yaws)[3], atol=1e-6)
+
+
+def test_wrapped_angles_point_the_same_way_and_stay_in_range(yaws):
+    for angle in (yaws, 1000 * yaws, yaws * 1e-8 - jnp.pi, yaws * 1e-8 + jnp.pi):
+        wrapped = wrap_angle(angle)
+        assert jnp.all((wrapped >= -jnp.pi) & (wrapped < jnp.pi))
+        np.testing.assert_allclose(jnp.cos(wrapped), jnp.cos(angle), atol=1e-3)
+        np.testing.assert_allclose(jnp.sin(wrapped), jnp.sin(angle), atol=1e-3)
+
+
+def test_half_a_turn_is_minus_pi():
+    np.testing.assert_allclose(wrap_angle(jnp.array([np.pi, -np.pi])), -np.pi, atol=1e-6)

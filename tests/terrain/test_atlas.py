@@ -1,0 +1,46 @@
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.terrain.atlas import VOID, make_atlas
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import InputError
+
+
+def random_map(seed, shape, origin, resolution=0.1):
+    rng = np.random.default_rng(seed)
+    heights = rng.uniform(-1, 1, shape).astype(np.float32)
+    heights[rng.random(shape) < 0.1] = np.nan
+    return HeightMap(heights, resolution, origin)
+
+
+def test_sampling_equals_the_slow_twin_on_every_map():
+    maps = [random_map(0, (31, 44), (-1.0, 2.0)), random_map(1, (50, 20), (3.0, -7.5))]
+    atlas = make_atlas(maps)
+    assert len(atlas) == 2
+    rng = np.random.default_rng(2)
+    for index, each in enumerate(maps):
+        x_min, x_max, y_min, y_max = each.extent
+        points = rng.uniform([x_min - 1, y_min - 1], [x_max + 1, y_max + 1], (4000, 2))
+        cells = (points - np.array(each.origin)) / each.resolution
+        inside_a_cell = np.all(np.abs(cells - np.floor(cells) - 0.5) > 1e-3, axis=1)
+        points = points[inside_a_cell]
+        expected = each.height_at(points)
+        sampled = atlas.height_at(jnp.int32(index), jnp.asarray(points, jnp.float32))
+        np.testing.assert_array_equal(sampled, np.where(np.isnan(expected), VOID, expected))
+
+
+def test_far_away_there_is_no_ground():
+    atlas = make_atlas([random_map(0, (5, 5), (0.0, 0.0))])
+    far = jnp.array([[1e6, 0.0], [-1e6, 3.0], [0.2, 1e9], [1e9, -1e9]])
+    np.testing.assert_array_equal(atlas.height_at(jnp.int32(0), far), VOID)
+
+
+def test_maps_of_different_resolution_are_refused():
+    with pytest.raises(InputError, match="one resolution"):
+        make_atlas([random_map(0, (5, 5), (0, 0)), random_map(0, (5, 5), (0, 0), 0.2)])
+
+
+def test_an_empty_atlas_is_refused():
+    with pytest.raises(InputError, match="at least one"):
+        make_atlas([])

@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from jaxleas.terrain import HeightMap, read_height_map, read_scene, write_height_map
+from jaxleas.terrain.commands import convert, generate, show
+from jaxleas.types import InputError
+
+
+def test_generate_then_import_then_show(tmp_path, capsys):
+    scene = generate(out=tmp_path / "scene.json", seed=4, rows=2, columns=3)
+    assert len(read_scene(scene).surfaces) > 5
+    converted = convert(scene, out=tmp_path / "map.npz", resolution=0.05)
+    assert read_height_map(converted).resolution == 0.05
+    picture = show(converted, out=tmp_path / "map.png")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    printed = capsys.readouterr().out
+    assert "2 x 3 tiles" in printed
+    assert "cells of 0.05 m" in printed
+
+
+def test_the_same_seed_writes_the_same_file(tmp_path):
+    first = generate(out=tmp_path / "a.json", seed=7).read_bytes()
+    assert generate(out=tmp_path / "b.json", seed=7).read_bytes() == first
+    assert generate(out=tmp_path / "c.json", seed=8).read_bytes() != first
+
+
+def test_show_never_writes_over_what_it_reads(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_height_map("map.npz", HeightMap(np.zeros((9, 9), np.float32), 0.04, (0.0, 0.0)))
+    assert str(show(tmp_path / "map.npz")) == "map_view.png"
+    assert (tmp_path / "map_view.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "problem"),
+    [
+        ({"rows": 0}, "rows = 0"),
+        ({"columns": 10**6}, "columns = 1000000"),
+        ({"seed": -1}, "seed -1"),
+        ({"out": "scene.txt"}, r"must end in \.json"),
+    ],
+)
+def test_generate_refuses_what_makes_no_arena(tmp_path, arguments, problem):
+    arguments = {"out": "scene.json"} | arguments
+    with pytest.raises(InputError, match=problem):
+        generate(**(arguments | {"out": tmp_path / arguments["out"]}))
+
+
+def test_import_writes_npz_only(tmp_path):
+    with pytest.raises(InputError, match=r"must end in \.npz"):
+        convert(tmp_path / "mesh.stl", out=tmp_path / "map.png")

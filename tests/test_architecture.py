@@ -1,0 +1,84 @@
+"""The order of the rooms, as docs and house rules state it: each imports only from those above."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import jaxleas
+
+ROOT = Path(jaxleas.__file__).parent
+ORDER = (
+    *("types", "files", "geometry", "robots", "terrain", "conditions", "envs", "training"),
+    *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation", "export"),
+    *("cli_guard", "cli_options", "cli"),
+)
+# What keeps the loop of data open: these may not, although the order would let them.
+FORBIDDEN = {"contacts": {"envs", "training", "guide"}, "surrogates": {"labels"}}
+FILES = sorted(path for path in ROOT.rglob("*.py") if path != ROOT / "__init__.py")
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(ROOT).parts[0].removesuffix(".py")
+
+
+def imported_rooms(source: str, package: list[str]) -> Iterator[str]:
+    """Yield the rooms that a file imports, at its top or inside a function, however spelt."""
+    for node in ast.walk(ast.parse(source)):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            names = [f"{module}.{alias.name}" for alias in node.names]
+        for name in names:
+            parts = name.split(".")
+            if parts[0] == "jaxleas" and len(parts) > 1:
+                yield parts[1]
+
+
+def violations(room: str, source: str, package: list[str]) -> list[str]:
+    allowed = {*ORDER[: ORDER.index(room) + 1]} - FORBIDDEN.get(room, set())
+    return sorted(set(imported_rooms(source, package)) - allowed - {"__version__"})
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_room_imports_only_from_rooms_above_it(path: Path) -> None:
+    assert room_of(path) in ORDER, f"{path} is in no room of the house"
+    package = ["jaxleas", *path.relative_to(ROOT).parts[:-1]]
+    assert not violations(room_of(path), path.read_text(encoding="utf-8"), package)
+
+
+@pytest.mark.parametrize(
+    ("room", "source", "found"),
+    [
+        ("envs", "def f():\n    from jaxleas.surrogates import x", ["surrogates"]),
+        ("envs", "import jaxleas.training.loop", ["training"]),
+        ("envs", "from jaxleas import training", ["training"]),
+        ("envs", "from .. import training", ["training"]),
+        ("envs", "from ..training.loop import train", ["training"]),
+        ("envs", "from . import steering; from jaxleas.types import Query", []),
+        ("contacts", "from jaxleas.guide import x; from jaxleas.types import y", ["guide"]),
+        ("surrogates", "from jaxleas import labels, conditions", ["labels"]),
+        ("export", "from jaxleas.cli import main", ["cli"]),
+    ],
+)
+def test_a_wrong_import_is_found(room: str, source: str, found: list[str]) -> None:
+    assert violations(room, source, ["jaxleas", room]) == found
+
+
+@pytest.mark.parametrize(
+    "module", ["jaxleas.envs.steering", "jaxleas.training", "jaxleas.training.loop"]
+)
+def test_steering_imports_no_physics(module: str) -> None:
+    if (
+        not (ROOT.parent / (module.replace(".", "/") + ".py")).exists()
+        and not (ROOT.parent / module.replace(".", "/") / "__init__.py").exists()
+    ):
+        pytest.skip(f"{module} does not exist yet")
+    code = f"import sys, {module}; assert not {{'mujoco', 'brax.envs'}} & sys.modules.keys()"
+    subprocess.run([sys.executable, "-c", code], check=True)

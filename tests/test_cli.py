@@ -1,0 +1,223 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Literal
+
+import pytest
+
+from jaxleas import cli
+from jaxleas.cli_guard import UsageError, run_guarded
+from jaxleas.types.errors import InputError, JaxleasError
+
+
+def walk(
+    policy: str | Path,
+    *,
+    out: Path,
+    starts: int = 1000,
+    suite: Literal["hole", "wall"] = "hole",
+    yaw: float | None = None,
+    origin: tuple[float, float] = (0.0, 0.0),
+    seeds: tuple[int, ...] = (),
+    verbose: bool = False,
+    json: Path | None = None,
+) -> None:
+    """Walk a policy.
+
+    Args:
+        policy: run folder
+            or file, 100 % sure.
+        out: where to write.
+        starts: how many.
+        suite: of terrains.
+        yaw: [deg].
+        origin: [m].
+        seeds: of the terrains.
+        verbose: say more.
+        json: results.
+
+    Raises:
+        InputError: never a help text.
+    """
+    CALLS.append(dict(locals()))
+
+
+CALLS: list[dict] = []
+
+
+@pytest.fixture(autouse=True)
+def walk_command(monkeypatch) -> None:
+    CALLS.clear()
+    rooms = {"room": SimpleNamespace(walk=walk)}
+    monkeypatch.setattr(cli, "COMMANDS", {**cli.COMMANDS, "gait walk": ("room", "walk", "walk")})
+    monkeypatch.setattr(cli, "import_module", rooms.__getitem__)
+
+
+def refusal(*arguments: str) -> str:
+    with pytest.raises(UsageError) as caught:
+        cli.run(arguments)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_options_follow_the_signature() -> None:
+    least = "gait walk runs/one --out G.npz"
+    most = f"{least} --starts 5 --suite wall --yaw -3.5 --origin 1 -2 --seeds 1 2 3 --verbose"
+    for line in (least, f"{most} --json=x.json"):
+        cli.run(line.split())
+    plain = {
+        "policy": Path("runs/one"),
+        "out": Path("G.npz"),
+        "starts": 1000,
+        "suite": "hole",
+        "yaw": None,
+        "origin": (0.0, 0.0),
+        "seeds": (),
+        "verbose": False,
+        "json": None,
+    }
+    chosen = {
+        "starts": 5,
+        "suite": "wall",
+        "yaw": -3.5,
+        "origin": [1.0, -2.0],
+        "seeds": [1, 2, 3],
+        "verbose": True,
+        "json": Path("x.json"),
+    }
+    first, second = CALLS
+    assert first == plain
+    assert second == {**plain, **chosen}
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("evalute RUN", ["no command 'evalute'", "meant 'evaluate'"]),
+        ("terrain shwo x", ["no command 'terrain shwo'", "meant 'terrain show'"]),
+        ("terain show x", ["no command 'terain'", "meant 'terrain show'"]),
+        ("terain", ["no command 'terain'", "meant 'terrain show'"]),
+        ("qqqq", ["no command 'qqqq'", "there are terrain show, "]),
+        ("gait walk p --out x --strats 3", ["has no --strats, perhaps you meant --starts"]),
+        ("gait walk p --out x --start 3", ["perhaps you meant --starts"]),
+        ("gait walk p --out x more", ["jaxleas gait walk has no more"]),
+        ("gait walk p", ["required: --out"]),
+        ("gait walk --out x", ["required: POLICY"]),
+        ("gait walk p --out x --starts many", ["--starts: invalid int value: 'many'"]),
+        ("gait walk p --out x --suite bridge", ["invalid choice: 'bridge'", "hole", "wall"]),
+        ("gait walk p --out", ["--out: expected one argument"]),
+    ],
+)
+def test_a_mistake_is_one_sentence_with_the_nearest(line: str, expected: list[str]) -> None:
+    sentence = refusal(*line.split())
+    assert all(part in sentence for part in expected), sentence
+    assert not CALLS
+
+
+def test_help_comes_from_the_docstring(capsys) -> None:
+    with pytest.raises(SystemExit) as caught:
+        cli.run(["gait", "walk", "--help"])
+    text = " ".join(capsys.readouterr().out.split())
+    assert caught.value.code == 0
+    assert "Walk a policy." in text
+    assert "run folder or file, 100 % sure." in text
+    assert "how many. [1000]" in text
+    assert "never a help text" not in text
+
+
+@pytest.mark.parametrize("line", ["", "--help", "-h", "terrain", "terrain --help"])
+def test_the_overview_lists_every_command(capsys, line: str) -> None:
+    cli.run(line.split())
+    text = capsys.readouterr().out
+    assert all(f"  {name}" in text for name in cli.COMMANDS)
+
+
+def test_version(capsys) -> None:
+    cli.run(["--version"])
+    assert capsys.readouterr().out.startswith("jaxleas 0.")
+
+
+def test_every_command_exists() -> None:
+    import importlib
+
+    for module, function, _ in cli.COMMANDS.values():
+        if module != "room":
+            assert callable(getattr(importlib.import_module(module), function))
+
+
+def guarded(error: BaseException, monkeypatch, *arguments: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["/usr/bin/jaxleas", *arguments])
+
+    def fail() -> None:
+        raise error
+
+    return run_guarded(fail)
+
+
+class StoppedError(JaxleasError):
+    exit_code = 130
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (InputError("x.yaml:\n no key"), 2, "jaxleas: x.yaml: no key\n"),
+        (UsageError("no command"), 2, "jaxleas: no command\n"),
+        (OSError(28, "No space left on device", "x.npz"), 2, "No space left on device: 'x.npz'"),
+        (StoppedError("stopped"), 130, "jaxleas: stopped\n"),
+        (KeyboardInterrupt(), 130, ""),
+    ],
+)
+def test_an_error_becomes_a_sentence_and_a_code(capsys, monkeypatch, error, code, words) -> None:
+    monkeypatch.delenv("JAXLEAS_TRACEBACK", raising=False)
+    assert guarded(error, monkeypatch) == code
+    text = capsys.readouterr().err
+    assert words in text
+    assert bool(words) == bool(text)
+
+
+def test_a_bug_keeps_its_traceback(monkeypatch) -> None:
+    monkeypatch.delenv("JAXLEAS_TRACEBACK", raising=False)
+    with pytest.raises(ZeroDivisionError):
+        guarded(ZeroDivisionError(), monkeypatch)
+    with pytest.raises(FileNotFoundError):
+        guarded(FileNotFoundError(), monkeypatch)
+
+
+def test_a_traceback_can_be_asked_for(monkeypatch) -> None:
+    monkeypatch.delenv("JAXLEAS_TRACEBACK", raising=False)
+    with pytest.raises(InputError):
+        guarded(InputError("x"), monkeypatch, "evaluate", "--traceback")
+    assert sys.argv[1:] == ["evaluate"]
+    monkeypatch.setenv("JAXLEAS_TRACEBACK", "1")
+    with pytest.raises(InputError):
+        guarded(InputError("x"), monkeypatch)
+
+
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
+    code = "import sys; from jaxleas.cli import main; sys.argv[0] = 'jaxleas'; main()"
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "JAXLEAS_TRACEBACK": ""},
+    )
+
+
+def test_a_whole_process_answers_with_one_line_and_two() -> None:
+    done = command("evalute")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == "jaxleas: there is no command 'evalute'; perhaps you meant 'evaluate'\n"
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = (
+        "import sys; from jaxleas.cli import run; run(['--help'])\n"
+        "heavy = {'jax', 'numpy', 'pydantic', 'matplotlib', 'mujoco'} & sys.modules.keys()\n"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
