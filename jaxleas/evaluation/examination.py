@@ -1,5 +1,6 @@
 """A policy, found by its path, judged on a suite by its name."""
 
+import hashlib
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import SUITES, Suite, make_suite
 from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy
+from jaxleas.guide.loading import load_policy, policy_file
 from jaxleas.guide.rb_lin import rb_lin
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types.errors import InputError
@@ -26,11 +27,13 @@ class Candidate:
 
     Attributes:
         path: it was loaded from.
+        fingerprint: SHA-256 of its file.
         env: the task it was trained for.
         methods: the policy as a steering method first, then RB-Lin.
     """
 
     path: Path
+    fingerprint: str
     env: SteeringEnv
     methods: Mapping[str, SteeringMethod]
 
@@ -47,7 +50,9 @@ def load_candidate(path: str | Path) -> Candidate:
         POLICY: leas(env, policy),
         BASELINE: rb_lin(env.config.limits, env.config.desired_speed),
     }
-    return Candidate(Path(path), env, methods)
+    file = policy_file(path) if Path(path).is_dir() else Path(path)
+    fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
+    return Candidate(Path(path), fingerprint, env, methods)
 
 
 def examine(
@@ -82,6 +87,7 @@ def examine(
     return Evaluation(
         suite=plan.name,
         policy=str(candidate.path),
+        fingerprint=candidate.fingerprint,
         robot=candidate.env.config.robot,
         seed=plan.seed,
         created=now(),
@@ -103,7 +109,7 @@ def run_evaluations(
 ) -> list[Evaluation]:
     """Return a run's evaluations on all suites: those it holds, and the others made and kept now.
 
-    One that is older than the policy, or cannot be read by this version, is made again.
+    One of another policy than the run's present one, or that cannot be read, is made again.
 
     Args:
         candidate: the run's.
@@ -114,7 +120,7 @@ def run_evaluations(
     evaluations = []
     for name in SUITES:
         path = evaluation_file(run, name)
-        evaluation = _kept(path, run / "policy.npz")
+        evaluation = kept_evaluation(path, candidate)
         if evaluation is None:
             suite = stage.suites.get(name)
             grounds = None if suite is None else stage.grounds
@@ -124,10 +130,12 @@ def run_evaluations(
     return evaluations
 
 
-def _kept(path: Path, policy: Path) -> Evaluation | None:
-    if not path.is_file() or path.stat().st_mtime < policy.stat().st_mtime:
+def kept_evaluation(path: Path, candidate: Candidate) -> Evaluation | None:
+    """Return the evaluation kept in that file, if it is one of this very policy."""
+    if not path.is_file():
         return None
     try:
-        return read_evaluation(path)
+        evaluation = read_evaluation(path)
     except InputError:  # of another version, or damaged: it is ours to make again
         return None
+    return evaluation if evaluation.fingerprint == candidate.fingerprint else None

@@ -160,11 +160,15 @@ def _detours(
 
 
 def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) -> "Figure":
-    figure = _figure(3.7 * len(shown), 3.0)
-    for ax, each in zip(figure.subplots(1, len(shown), squeeze=False)[0], shown, strict=True):
+    figure = _figure(3.9 * len(shown), 2.75)
+    axes = figure.subplots(1, len(shown), squeeze=False)[0]
+    for ax, each in zip(axes, shown, strict=True):
         valid = ~each.walks[method].invalid[:DOTS]
         title = f"{cell_title(each.cell.name)}: {int(valid.sum())} of {len(valid)} stayed valid"
-        draw_view(ax, _view(env, grounds, each, method, 3, title))
+        draw_view(ax, _view(env, grounds, each, method, 2, title))
+    widest = max(ax.get_xlim()[1] for ax in axes)
+    for ax in axes:
+        ax.set_xlim(right=widest)  # one scale for all
     _legend(figure)
     return figure
 

@@ -21,7 +21,7 @@ ARROW_SPACING, ARROW_TURN = 0.3, 1.0
 """Between two heading arrows along a path [m], and in turning [rad]."""
 ARROW_LENGTH = 0.15
 """Of a heading arrow [inches], whatever the picture's scale."""
-MOST_ARROWS = 40
+MOST_ARROWS = 25
 """Along one path: a robot that dithers must not be drowned in them."""
 BORDER = 0.12
 """Void shown around the ground [m]."""
@@ -136,7 +136,8 @@ def arrow_indices(
     turned = np.abs((np.diff(yaw) + np.pi) % (2.0 * np.pi) - np.pi) / ARROW_TURN
     travelled = np.concatenate([[0.0], np.cumsum(moved + turned)])
     spacing = max(1.0, travelled[-1] / MOST_ARROWS)
-    return np.unique(np.searchsorted(travelled, np.arange(0.0, travelled[-1] + 1e-9, spacing)))
+    wanted = np.arange(0.0, travelled[-1] + 1e-9, spacing)
+    return np.unique(np.searchsorted(travelled, np.minimum(wanted, travelled[-1])))
 
 
 def _draw_goals(ax: "Axes", waypoints: Float[np.ndarray, "W 3"], radius: float) -> None:

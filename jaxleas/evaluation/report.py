@@ -17,6 +17,7 @@ from jaxleas.evaluation.table import (
     HEADINGS,
     THESIS,
     cell_title,
+    filled_columns,
     method_title,
     percent,
     rows,
@@ -25,6 +26,8 @@ from jaxleas.files import read_json, write_bytes, write_text
 from jaxleas.training.metrics import read_metrics
 
 TEMPLATE = "report.html"
+MOST_LISTED = 12
+"""Entries of a list in the provenance; a command line is shorter."""
 KINDS = ("rubble", "bridge", "stairs_down", "stairs_up")
 
 
@@ -102,14 +105,24 @@ def render_report(
         headlines=headlines(by_suite, metrics),
         success=success_rows(by_suite.get("transitions")),
         kinds=[cell_title(kind) for kind in KINDS],
-        columns=HEADINGS,
-        tables=[(each, rows(each)) for each in evaluations],
+        tables=[_table(each) for each in evaluations],
+        robot=evaluations[0].robot if evaluations else "",
         pictures=[(each.name, each.caption, inline(each.png)) for each in pictures],
         curves=inline(draw_learning_curves(metrics)) if metrics else None,
         config=_text(run / "config.yaml"),
         provenance=_provenance(run / "provenance.json"),
         seeds=sorted({evaluation.seed for evaluation in evaluations}),
     )
+
+
+def _table(evaluation: Evaluation) -> dict[str, Any]:
+    body = rows(evaluation)
+    kept = filled_columns(body)
+    return {
+        "evaluation": evaluation,
+        "columns": [HEADINGS[column] for column in kept],
+        "rows": [[row[column] for column in kept] for row in body],
+    }
 
 
 def headlines(
@@ -190,5 +203,6 @@ def _plain(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} {_plain(each)}" for key, each in value.items())
     if isinstance(value, list):
-        return " ".join(_plain(each) for each in value) or "none"
+        more = [f"and {len(value) - MOST_LISTED} more"] if len(value) > MOST_LISTED else []
+        return " ".join([_plain(each) for each in value[:MOST_LISTED]] + more) or "none"
     return value if isinstance(value, str) else json.dumps(value)

@@ -84,6 +84,8 @@ class Evaluation(Strict):
     suite: str
     policy: str
     """Where it was read from."""
+    fingerprint: str | None = None
+    """SHA-256 of its file: whether it is still the one that was judged."""
     robot: str
     seed: int
     created: str

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from jaxleas.evaluation.result_file import CellResult, Evaluation
+from jaxleas.evaluation.result_file import AreaResult, CellResult, Evaluation
 
 THESIS_METHOD = "leas_p1"
 # T table 3.3: fraction of 100 starts that reach the goal, by cell and heading [deg].
@@ -71,13 +71,25 @@ def _row(suite: str, cell: CellResult) -> tuple[str, ...]:
         percent(cell.invalid),
         percent(cell.stopped),
         f"{percent(cell.low)[:-2]} to {percent(cell.high)}",
-        percent(near.reached if near else None),
-        percent(far.reached if far else None),
+        percent(_good(cell, near)),
+        percent(_good(cell, far)),
         "-" if cell.mean_time is None else f"{cell.mean_time:.1f} s",
         "-" if cell.mean_length is None else f"{cell.mean_length:.2f} m",
         "-" if cell.detour is None else f"{cell.detour:.2f}",
         percent(THESIS.get((cell.name, cell.yaw)), 0) if quoted else "-",
     )
+
+
+def _good(cell: CellResult, area: AreaResult | None) -> float | None:
+    """Return the main fraction in one start area."""
+    if area is None:
+        return None
+    return area.reached if cell.expectation == "cross" else 1.0 - area.invalid
+
+
+def filled_columns(body: Sequence[Sequence[str]]) -> list[int]:
+    """Return which columns say something: the others would only push them off the line."""
+    return [column for column in range(len(HEADINGS)) if any(row[column] != "-" for row in body)]
 
 
 def plain_table(evaluation: Evaluation) -> str:
@@ -87,9 +99,7 @@ def plain_table(evaluation: Evaluation) -> str:
     starts = evaluation.cells[0].starts if evaluation.cells else 0
     title = f"{evaluation.suite}: {starts} starts a cell, seed {evaluation.seed}; must {wanted}"
     body = rows(evaluation)
-    # Columns that say nothing in this suite would only push the others off the line.
-    kept = [column for column in range(len(HEADINGS)) if any(row[column] != "-" for row in body)]
-    return "\n".join([title, *_align([HEADINGS, *body], kept)])
+    return "\n".join([title, *_align([HEADINGS, *body], filled_columns(body))])
 
 
 def _align(lines: Sequence[Sequence[str]], kept: Sequence[int]) -> list[str]:

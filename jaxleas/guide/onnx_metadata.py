@@ -4,6 +4,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from pydantic import ValidationError
+
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ObservationLayout, layout_named
 from jaxleas.types import InputError
@@ -70,8 +72,10 @@ def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
         raise InputError(f"{path} expects another observation layout: {error}") from error
     try:
         config = SteeringConfig.model_validate(stated)
-    except ValueError as error:
-        raise InputError(f"{path}: its steering_config is not usable: {error}") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, ("steering_config", *first["loc"])))
+        raise InputError(f"{path}: its metadata {key} is not usable: {first['msg']}") from error
     expected = json.loads(json.dumps(_observation(layout, config)))
     for key in ("name", "size", "rows", "columns", "order", "units", "height_clip"):
         if observation.get(key) != expected[key] or config.observation != name:

@@ -61,10 +61,9 @@ def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
     Raises:
         InputError: as `read_onnx_policy`.
     """
-    _check_graph(content, path)
-    session = _session(content, path)
-    metadata = dict(session.get_modelmeta().custom_metadata_map)
+    metadata = _read_metadata(content, path)
     config = read_config(path, metadata)
+    session = _session(content, path)
     size = layout_named(config.observation).size
     ports = [(each.name, each.type, each.shape[1:]) for each in session.get_inputs()]
     ports += [(each.name, each.type, each.shape[1:]) for each in session.get_outputs()]
@@ -77,7 +76,8 @@ def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
     return OnnxPolicy(config, metadata, session)
 
 
-def _check_graph(content: bytes, path: object) -> None:
+def _read_metadata(content: bytes, path: object) -> dict[str, str]:
+    """Check the graph; return what the file says about itself."""
     import onnx
 
     try:
@@ -92,6 +92,7 @@ def _check_graph(content: bytes, path: object) -> None:
             f"{path} uses operators {opsets}; standard operators of opset {OPSETS.start} to"
             f" {OPSETS.stop - 1} would do"
         )
+    return {each.key: each.value for each in model.metadata_props}
 
 
 def _session(content: bytes, path: object) -> Any:

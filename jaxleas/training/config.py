@@ -15,6 +15,21 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 
 
+class LinkShares(Strict):
+    """How often an episode begins at a link of each kind, relative to the others.
+
+    Left to chance half of the links would be level ground, and one in ten a narrow bridge, which
+    takes the longest to learn.
+    """
+
+    bridge: NonNegative = 0.35
+    stairs_up: NonNegative = 0.20
+    stairs_down: NonNegative = 0.20
+    rubble: NonNegative = 0.10
+    obstacles: NonNegative = 0.12
+    flat: NonNegative = 0.03
+
+
 class TerrainConfig(Strict):
     """The arenas that are trained on."""
 
@@ -24,6 +39,7 @@ class TerrainConfig(Strict):
     """Side of a height map's cell [m]."""
     first_seed: Annotated[int, Field(ge=0, le=MAX_TRAINING_SEED)] = 0
     """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
+    shares: LinkShares = LinkShares()
     generator: GeneratorConfig = GeneratorConfig()
 
 
@@ -59,6 +75,10 @@ class PpoConfig(Strict):
     entropy: NonNegative = 0.003
     value_weight: NonNegative = 0.5
     reward_scale: Positive = 0.1
+    final_failure: NonNegative = 60.0
+    """env.reward.failure grows linearly to this. At first falling must be cheap, or nobody dares to
+    set foot on a bridge; in the end it must be dear, or turning while walking backwards towards an
+    edge pays although one in ten falls."""
     max_gradient_norm: Positive = 1.0
     mirror: bool = True
     """Learn from each batch's mirror image as often as from the batch itself."""

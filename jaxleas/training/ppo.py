@@ -76,10 +76,15 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
     """Return the roll-out: every robot takes `unroll` steps with the present policy."""
     ppo = config.ppo
     distribution = networks.parametric_action_distribution
-    weights = RewardParams.of(config.env.reward)
+    start_weights = RewardParams.of(config.env.reward)
 
     def walk(world: World, state: TrainState, key: Array):
         pool_key, noise_key, restart_key = jax.random.split(key, 3)
+        progress = state.update.astype(jnp.float32) / ppo.updates
+        growth = ppo.final_failure - config.env.reward.failure
+        weights = start_weights.replace(  # type: ignore[attr-defined]
+            failure=start_weights.failure + progress * growth
+        )
         pool = draw_starts(env, world, pool_key, ppo.candidates)
         restart_keys = jax.random.split(restart_key, ppo.unroll)
         # All exploration noise in one draw: one random key a batch, not one a robot.

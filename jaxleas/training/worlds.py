@@ -30,4 +30,4 @@ def held_out_world(config: RunConfig) -> World:
 
 def _world(config: RunConfig, seeds: range) -> World:
     arenas = [generate_arena(config.terrain.generator, seed) for seed in seeds]
-    return make_world(arenas, config.terrain.resolution)
+    return make_world(arenas, config.terrain.resolution, config.terrain.shares.model_dump())

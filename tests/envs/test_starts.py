@@ -7,6 +7,7 @@ from jaxleas.envs.steering import SteeringConfig, SteeringEnv, draw_starts, rest
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
+from jaxleas.types import InputError
 
 from .worlds import flat, height_map, world_of
 
@@ -92,3 +93,28 @@ def test_nobody_starts_over_the_void(env):
     state, _ = take(draw_starts(env, world, jax.random.key(11), 512), jax.random.key(12), 256)
     assert np.all(state.motion.position[:, 0] < -1.8)
     assert np.all(np.abs(state.motion.position[:, 2]) < 2.0)
+
+
+def test_starts_are_shared_among_the_kinds_of_links_as_asked(env):
+    arenas = [generate_arena(GeneratorConfig(rows=4, columns=4), seed) for seed in range(3)]
+    shares = {"bridge": 3.0, "stairs_up": 1.0, "stairs_down": 0.0}
+    shares |= {"rubble": 0.0, "obstacles": 0.0, "flat": 0.0}
+    world = make_world(arenas, 0.04, shares)
+    kinds = np.array([link.kind for arena in arenas for link in arena.links])
+    share = np.diff(np.asarray(world.cumulative_share), prepend=0.0)
+    for kind, expected in (("bridge", 0.75), ("stairs_up", 0.25), ("rubble", 0.0)):
+        assert share[kinds == kind].sum() == pytest.approx(expected, abs=1e-6)
+    state, _ = take(draw_starts(env, world, jax.random.key(0), 512), jax.random.key(1), 300)
+    starts = np.asarray(state.motion.position[:, :2])
+    allowed = np.asarray(world.start_area)[share > 0]
+    inside = np.all((starts[:, None] >= allowed[:, 0::2]) & (starts[:, None] <= allowed[:, 1::2]), -1)
+    assert np.all(inside.any(axis=1))
+
+
+def test_shares_that_no_link_can_serve_are_refused():
+    arenas = [generate_arena(GeneratorConfig(rows=1, columns=2), 0)]
+    kinds = {link.kind for link in arenas[0].links}
+    shares = dict.fromkeys(("bridge", "stairs_up", "stairs_down", "rubble", "obstacles", "flat"), 0.0)
+    assert kinds
+    with pytest.raises(InputError, match=r"terrain\.shares"):
+        make_world(arenas, 0.04, shares)

@@ -41,6 +41,7 @@ def world_of(*maps: HeightMap) -> World:
         start_area=jnp.asarray(start),
         goal_area=jnp.asarray(goal),
         arena_area=jnp.asarray(areas),
+        cumulative_share=jnp.linspace(1 / len(maps), 1.0, len(maps)),
     )
 
 

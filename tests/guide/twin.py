@@ -1,4 +1,4 @@
-"""LEAS and its conditions in plain NumPy, one robot at a time, sharing no code with the fast path."""
+"""LEAS and its conditions in plain NumPy, one robot at a time, sharing no code with JAX's."""
 
 import math
 
@@ -17,15 +17,15 @@ class Twin:
 
     def heights(self, points, position, yaw):
         """Heights relative to the root under points of the root frame; -inf over the void."""
-        found = []
-        for x, y in points:
-            world = [
+        world = [
+            [
                 position[0] + x * math.cos(yaw) - y * math.sin(yaw),
                 position[1] + x * math.sin(yaw) + y * math.cos(yaw),
             ]
-            height = float(self.terrain.height_at(np.array([world]))[0])
-            found.append(-math.inf if math.isnan(height) else height - float(position[2]))
-        return np.array(found)
+            for x, y in points
+        ]
+        height = self.terrain.height_at(np.array(world)).astype(float)
+        return np.where(np.isnan(height), -math.inf, height - float(position[2]))
 
     def step(self, position, velocity, yaw, goal):
         """The next configuration: T eq. 3.1 to 3.3."""
@@ -76,7 +76,9 @@ class Twin:
         for (x, y), height in zip(near, self.heights(near, position, float(yaw)), strict=True):
             for limb in self.robot.limbs:
                 shape = limb.range_of_motion
-                if math.isfinite(height) and np.all(shape.normals @ [x, y, height] <= shape.offsets):
+                if math.isfinite(height) and np.all(
+                    shape.normals @ [x, y, height] <= shape.offsets
+                ):
                     return True
         return False
 

@@ -37,9 +37,7 @@ def random_policy(seed: int = 0, activation: str = "relu", hidden=(16, 12), **ta
 
 def flat_map(half_size: float = 4.0, resolution: float = 0.1) -> HeightMap:
     count = round(2 * half_size / resolution) + 1
-    return HeightMap(
-        np.zeros((count, count), np.float32), resolution, (-half_size, -half_size)
-    )
+    return HeightMap(np.zeros((count, count), np.float32), resolution, (-half_size, -half_size))
 
 
 def small_arena(seed: int = 3):

@@ -37,6 +37,9 @@ class RewardWeights(Strict):
     """w_acc, on the squared acceleration."""
     alive: NonNegative = 1.0
     """w_alive, for every valid configuration."""
+    failure: NonNegative = 0.0
+    """Taken off for an invalid configuration, beyond what not being alive any more costs. The
+    thesis has none; training lets it grow (ppo.final_failure)."""
 
 
 class SteeringConfig(Strict):

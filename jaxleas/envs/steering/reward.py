@@ -18,6 +18,7 @@ class RewardParams:
     turn: Float[Array, ""]
     acceleration: Float[Array, ""]
     alive: Float[Array, ""]
+    failure: Float[Array, ""]
 
     @classmethod
     def of(cls, weights: RewardWeights) -> "RewardParams":
@@ -37,7 +38,8 @@ def reward(
 
     R = w_dir R_dir + w_ori R_ori + w_omega R_omega + w_acc R_acc + w_alive R_alive, with
     R_dir = -(|v - v*| / (2 v_max))^2, R_ori = -(1 - q_ori . u), R_omega = -(omega / omega_max)^2,
-    R_acc = -(|a| / a_max)^2 and R_alive = 1 for a valid configuration.
+    R_acc = -(|a| / a_max)^2 and R_alive = 1 for a valid configuration; an invalid one costs
+    w_failure, which the thesis does not have.
 
     Args:
         params: the weights.
@@ -59,4 +61,5 @@ def reward(
         + params.turn * turn
         - params.acceleration * square / limits.max_acceleration**2
         + params.alive * valid
+        - params.failure * (1.0 - valid)
     )

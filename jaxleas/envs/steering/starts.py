@@ -50,7 +50,7 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
         count: number of candidates.
     """
     link_key, place_key, motion_key, goal_key = jax.random.split(key, 4)
-    link = jax.random.randint(link_key, (count,), 0, len(world.map_index))
+    link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
     plan = _draw_plan(env, world, link, goal_key)
     motion = _draw_motion(env, world, link, place_key, motion_key)
     state = env.start(motion, plan)

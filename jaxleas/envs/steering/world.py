@@ -1,6 +1,7 @@
 """What the robots stand in: an atlas of terrains and the links to cross on them."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 import jax.numpy as jnp
 import numpy as np
@@ -24,6 +25,7 @@ class World:
         start_area: x_min, x_max, y_min, y_max where a link's crossing starts [m].
         goal_area: likewise where it ends [m].
         arena_area: likewise of each link's whole arena, for random goals [m].
+        cumulative_share: of the starts that fall on each link and those before it; ends at 1.
     """
 
     atlas: Atlas
@@ -31,17 +33,22 @@ class World:
     start_area: Float[Array, "links 4"]
     goal_area: Float[Array, "links 4"]
     arena_area: Float[Array, "links 4"]
+    cumulative_share: Float[Array, " links"]
 
 
-def make_world(arenas: Sequence[Arena], resolution: float) -> World:
+def make_world(
+    arenas: Sequence[Arena], resolution: float, shares: Mapping[str, float] | None = None
+) -> World:
     """Rasterise arenas into one atlas and list their links.
 
     Args:
         arenas: each with at least one link among them.
         resolution: of the height maps [m].
+        shares: relative share of starts by kind of link, split evenly among the links of a kind;
+            without it every link is as likely as any other.
 
     Raises:
-        InputError: no arena has a link.
+        InputError: no arena has a link, or none of a kind with a share.
     """
     maps = [rasterise(arena.scene, resolution) for arena in arenas]
     links = [(index, link) for index, arena in enumerate(arenas) for link in arena.links]
@@ -56,7 +63,21 @@ def make_world(arenas: Sequence[Arena], resolution: float) -> World:
         start_area=_areas([link.start_area for _, link in links]),
         goal_area=_areas([link.goal_area for _, link in links]),
         arena_area=_areas([extents[index] for index, _ in links]),
+        cumulative_share=_cumulative([link.kind for _, link in links], shares),
     )
+
+
+def _cumulative(kinds: Sequence[str], shares: Mapping[str, float] | None) -> Array:
+    count = Counter(kinds)
+    weight = np.array([shares[kind] / count[kind] if shares else 1.0 for kind in kinds])
+    if weight.sum() <= 0.0:
+        raise InputError(
+            f"the links are of the kinds {', '.join(sorted(count))}, none of which has a share of"
+            " the starts: raise one in terrain.shares"
+        )
+    cumulative = np.cumsum(weight) / weight.sum()
+    cumulative[-1] = 1.0
+    return jnp.asarray(cumulative, dtype=jnp.float32)
 
 
 def _areas(areas: Sequence[Sequence[float]]) -> Array:

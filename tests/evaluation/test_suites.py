@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from jaxleas.evaluation.suites import (
+    MAX_SEED,
+    MAX_STARTS,
+    STARTS_PER_SCENE,
+    SUITES,
+    make_suite,
+    scene_seeds,
+)
+from jaxleas.terrain.seeds import EVALUATION_SEED, HELD_OUT_SEED, MAX_TRAINING_SEED
+from jaxleas.types import InputError
+
+
+def vertices(suite):
+    return [
+        polygon
+        for cell in suite.cells
+        for scenario in cell.scenarios
+        for polygon in scenario.scene.polygons
+    ]
+
+
+@pytest.mark.parametrize("name", SUITES)
+def test_the_same_name_starts_and_seed_give_the_same_scenes(name):
+    one, other = make_suite(name, 40), make_suite(name, 40)
+    assert all(map(np.array_equal, vertices(one), vertices(other)))
+    assert [(cell.name, cell.yaw) for cell in one.cells] == [
+        (cell.name, cell.yaw) for cell in other.cells
+    ]
+    shifted = vertices(make_suite(name, 40, seed=1))
+    same = [np.array_equal(a, b) for a, b in zip(vertices(one), shifted, strict=False)]
+    assert not all(same) or len(shifted) != len(vertices(one))
+
+
+def test_no_seed_is_ever_trained_or_held_out_on():
+    for seed in (0, 1, MAX_SEED - 1):
+        seeds = scene_seeds(MAX_STARTS, seed)
+        assert min(seeds) >= EVALUATION_SEED > HELD_OUT_SEED > MAX_TRAINING_SEED
+    assert not set(scene_seeds(MAX_STARTS, 0)) & set(scene_seeds(MAX_STARTS, 1))
+
+
+def test_transitions_are_the_thesis_table():
+    suite = make_suite("transitions", 1000)
+    kinds = {"rubble", "bridge", "stairs_down", "stairs_up"}
+    assert {(cell.name, cell.yaw) for cell in suite.cells} == {
+        (kind, yaw) for kind in kinds for yaw in (0.0, 180.0)
+    }
+    for cell in suite.cells:
+        assert cell.starts == 1000
+        assert len(cell.scenarios) == 1000 // STARTS_PER_SCENE
+        # The scenes are really different ones.
+        assert len({each.scene.polygons[1].tobytes() for each in cell.scenarios}) > 40
+
+
+def test_dead_ends_must_be_stopped_at_and_all_else_be_crossed():
+    for name in SUITES:
+        for cell in make_suite(name, 2).cells:
+            assert cell.expectation == ("stop" if name == "dead_end" else "cross")
+            assert all(each.crossing == (name != "dead_end") for each in cell.scenarios)
+
+
+def test_a_misspelt_suite_is_answered_with_the_nearest():
+    with pytest.raises(InputError, match="did you mean 'dead_end'"):
+        make_suite("deadends")
+
+
+@pytest.mark.parametrize(
+    ("starts", "seed", "named"),
+    [(0, 0, "starts = 0"), (-5, 0, "starts = -5"), (1, -1, "seed = -1")],
+)
+def test_numbers_out_of_range_are_refused(starts, seed, named):
+    with pytest.raises(InputError, match=named):
+        make_suite("hole", starts, seed)
+
+
+def test_more_starts_than_seeds_are_refused():
+    with pytest.raises(InputError, match="at most"):
+        make_suite("hole", MAX_STARTS + 1)
+    with pytest.raises(InputError, match="from 0 to"):
+        make_suite("hole", 1, seed=MAX_SEED)

@@ -1,0 +1,54 @@
+import json
+
+import pytest
+
+from jaxleas.export.commands import export
+from jaxleas.files import write_json, write_text
+from jaxleas.guide import load_policy
+from jaxleas.training.config import HeldOutConfig, RunConfig, TerrainConfig
+from jaxleas.training.configuration import to_yaml
+from jaxleas.training.policy import write_policy
+from jaxleas.types import InputError
+from tests.guide.walkers import random_policy
+
+POLICY = random_policy(seed=4)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run folder as training leaves it, as far as exporting is concerned."""
+    config = RunConfig(terrain=TerrainConfig(arenas=1), held_out=HeldOutConfig(arenas=2))
+    write_text(tmp_path / "run" / "config.yaml", to_yaml(config))
+    write_json(tmp_path / "run" / "provenance.json", {"format": 1})
+    write_policy(tmp_path / "run" / "policy.npz", POLICY)
+    return tmp_path / "run"
+
+
+def test_a_run_is_exported_with_its_configuration_and_verdict(run, tmp_path, capsys):
+    write_json(run / "evaluation" / "transitions.json", {"cells": [{"name": "rubble"}]})
+    export(run, out=tmp_path / "out")
+    assert "of JAX on" in capsys.readouterr().out
+    record = json.loads((tmp_path / "out" / "export.json").read_text())
+    assert "arenas: 2" in record["metadata"]["training_config"]
+    assert record["metadata"]["success"] == [{"name": "rubble"}]
+    assert load_policy(tmp_path / "out" / "policy.onnx").config == POLICY.config
+    assert not (run / "policy.onnx").exists()
+
+
+def test_what_is_no_run_is_refused(tmp_path, run):
+    for path, says in (
+        (tmp_path / "none", "does not exist"),
+        (tmp_path, "not a run folder"),
+        (run / "policy.npz", "is a file"),
+    ):
+        with pytest.raises(InputError, match=says):
+            export(path)
+    (run / "policy.npz").unlink()
+    with pytest.raises(InputError, match=r"no policy\.npz"):
+        export(run)
+
+
+def test_a_run_of_another_version_is_refused(run):
+    write_json(run / "provenance.json", {"format": 99, "jaxleas": "7.0"})
+    with pytest.raises(InputError, match="format 99"):
+        export(run)

@@ -1,0 +1,42 @@
+"""Tiny trainings for tests."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from jaxleas.training.config import RunConfig
+
+ROOT = Path(__file__).resolve().parents[2]
+
+TINY = {
+    "terrain": {"arenas": 2, "generator": {"rows": 3, "columns": 3}},
+    "network": {"hidden": [16, 16]},
+    "ppo": {
+        "steps": 64 * 10 * 8,
+        "environments": 64,
+        "unroll": 10,
+        "minibatches": 2,
+        "epochs": 2,
+        "candidates": 64,
+    },
+    "held_out": {"every": 2, "starts": 16, "arenas": 1, "steps": 40},
+    "final": {"evaluate": False},
+}
+
+
+def tiny(**ppo) -> RunConfig:
+    return RunConfig.model_validate(TINY | {"ppo": TINY["ppo"] | ppo})
+
+
+def start_training(*arguments: str, cache: Path) -> subprocess.Popen:
+    """Start `python train.py ...` with a compile cache of its own, so that only one start is slow."""
+    return subprocess.Popen(
+        [sys.executable, "train.py", *arguments],
+        cwd=ROOT,
+        env=os.environ | {"JAX_COMPILATION_CACHE_DIR": str(cache), "CI": "true"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )

@@ -1,0 +1,128 @@
+"""A run that stops, by whatever cause, goes on as if it had not."""
+
+import json
+import os
+import random
+import signal
+import time
+
+import numpy as np
+import pytest
+import yaml
+
+from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.training.loop import NonFiniteError, train
+from jaxleas.training.run_folder import RunFolder
+
+from .runs import TINY, start_training, tiny
+
+
+def checkpoint_arrays(folder):
+    newest = max((folder / "checkpoints").glob("step_*.npz"))
+    with np.load(newest) as archive:
+        return newest.name, {name: archive[name] for name in archive.files if name != "manifest"}
+
+
+def rows_of(folder):
+    rows = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    return [{name: value for name, value in row.items() if name != "seconds"} for row in rows]
+
+
+def assert_same_run(left, right):
+    (left_name, left_arrays), (right_name, right_arrays) = map(checkpoint_arrays, (left, right))
+    assert left_name == right_name
+    assert left_arrays.keys() == right_arrays.keys()
+    for name, value in left_arrays.items():
+        assert value.tobytes() == right_arrays[name].tobytes(), name
+    assert rows_of(left) == rows_of(right)
+    with np.load(left / "policy.npz") as one, np.load(right / "policy.npz") as other:
+        assert all(one[name].tobytes() == other[name].tobytes() for name in one.files)
+
+
+@pytest.mark.usefixtures("brax_ranks")
+def test_a_run_leaves_what_it_should(tmp_path):
+    config = tiny()
+    with RunFolder.create(tmp_path / "run", "seed: 0\n", ["test"]) as run:
+        policy = train(config, run)
+    rows = rows_of(tmp_path / "run")
+    assert [row["step"] for row in rows] == [640 * update for update in range(1, 9)]
+    assert all("held_out/reached" in row for row in rows[1::2])
+    assert all(row["learn/total_loss"] is not None for row in rows)
+    assert policy.config == config.env
+    assert Checkpoints(tmp_path / "run" / "checkpoints").steps()[-1] == 640 * 8
+
+
+@pytest.mark.usefixtures("brax_ranks")
+def test_numbers_that_are_not_finite_stop_the_run_and_keep_the_last_good_state(tmp_path):
+    import jax
+
+    config = tiny(learning_rate=1e25, final_learning_rate=1e25)
+    with (
+        RunFolder.create(tmp_path / "run", "seed: 0\n", ["test"]) as run,
+        jax.debug_nans(False),
+        pytest.raises(NonFiniteError, match=r"update \d+ .* non-finite .* parameters"),
+    ):
+        train(config, run)
+    name, arrays = checkpoint_arrays(tmp_path / "run")
+    assert all(np.all(np.isfinite(value)) for value in arrays.values() if value.dtype.kind == "f")
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    """A whole run, the folder of its compile cache, and its configuration file."""
+    folder = tmp_path_factory.mktemp("runs")
+    config = folder / "tiny.yaml"
+    steps = {"steps": 64 * 10 * 24}
+    config.write_text(yaml.safe_dump(TINY | {"ppo": TINY["ppo"] | steps}))
+    process = start_training(str(config), "--run-dir", str(folder / "whole"), cache=folder / "xla")
+    output, _ = process.communicate(timeout=300)
+    assert process.returncode == 0, output
+    return folder, config
+
+
+def resume_until_done(folder, cache):
+    process = start_training("--resume", str(folder), cache=cache)
+    output, _ = process.communicate(timeout=300)
+    assert process.returncode == 0, output
+
+
+@pytest.mark.slow
+def test_a_run_killed_at_random_moments_ends_bitwise_equal(uninterrupted):
+    folder, config = uninterrupted
+    run, cache = folder / "killed", folder / "xla"
+    random.seed(5)
+    arguments = [str(config), "--run-dir", str(run)]
+    kills = 0
+    for _ in range(4):
+        process = start_training(*arguments, cache=cache)
+        moment = random.uniform(0.0, 1.5)
+        deadline = time.monotonic() + 120
+        while not (run / "checkpoints").is_dir() and time.monotonic() < deadline:
+            time.sleep(0.02)  # wait for the first state; then the moment is anybody's guess
+        time.sleep(moment)
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            kills += 1
+        process.communicate()
+        arguments = ["--resume", str(run)]
+    resume_until_done(run, cache)
+    assert kills >= 1
+    assert_same_run(folder / "whole", run)
+
+
+@pytest.mark.slow
+def test_ctrl_c_saves_and_says_how_to_go_on(uninterrupted):
+    folder, config = uninterrupted
+    run = folder / "interrupted"
+    process = start_training(str(config), "--run-dir", str(run), cache=folder / "xla")
+    while not (run / "checkpoints").is_dir() and process.poll() is None:
+        time.sleep(0.02)
+    time.sleep(1.0)
+    os.killpg(process.pid, signal.SIGINT)
+    output, _ = process.communicate(timeout=120)
+    if process.returncode != 0:  # else it was done before the signal came
+        assert process.returncode == 130
+        assert f"--resume {run}" in output
+        assert "Traceback" not in output
+        resume_until_done(run, folder / "xla")
+    assert_same_run(folder / "whole", run)

@@ -1,0 +1,150 @@
+"""PPO meets worlds whose answers are known."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.training.config import RunConfig
+from jaxleas.training.networks import make_networks
+from jaxleas.training.ppo import _mirror_half, make_train_step
+from jaxleas.training.train_state import initial_state
+
+from ..envs.worlds import flat, height_map, world_of
+
+pytestmark = pytest.mark.usefixtures("brax_ranks")
+
+ALIVE_ONLY = {"direction": 0.0, "orientation": 0.0, "turn": 0.0, "acceleration": 0.0, "alive": 1.0}
+SMALL = {
+    "environments": 64,
+    "unroll": 10,
+    "minibatches": 2,
+    "epochs": 4,
+    "candidates": 64,
+    "steps": 64 * 10 * 60,
+    "learning_rate": 3e-3,
+    "final_learning_rate": 1e-4,
+}
+
+
+def run(condition=None, env=None, **ppo):
+    """Train on flat ground and return the final state, its metrics, and the networks."""
+    config = RunConfig.model_validate(
+        {"network": {"hidden": [32, 32]}, "env": env or {}, "ppo": SMALL | ppo}
+    )
+    steering = SteeringEnv(config.env, condition)
+    networks = make_networks(config.network, steering)
+    world = world_of(height_map(flat), height_map(flat, half_size=4.0))
+    state = initial_state(config, steering, world, networks)
+    step = jax.jit(make_train_step(config, steering, networks), donate_argnums=1)
+    history = []
+    for _ in range(config.ppo.updates):
+        state, metrics = step(world, state)
+        history.append({name: float(value) for name, value in metrics.items()})
+    return state, history, networks
+
+
+def mean_value(state, networks) -> float:
+    values = networks.value_network.apply(
+        state.normaliser, state.params.value, state.observation
+    )
+    return float(jnp.mean(values))
+
+
+def test_the_value_of_staying_alive_is_the_geometric_sum():
+    """Reward 1 a step for ever: V = scale / (1 - discount)."""
+    state, _, networks = run(env={"reward": ALIVE_ONLY}, discount=0.8, reward_scale=0.5)
+    assert mean_value(state, networks) == pytest.approx(0.5 / (1 - 0.8), rel=0.03)
+
+
+def test_nothing_follows_a_termination():
+    """A condition that always fails after the start: V is one step's reward, here 0 - 0.25."""
+
+    def fails_once_moved(heights, motion):
+        # Starts are judged at rest or at most at 0.1 m/s; a step adds exactly nothing here, so
+        # the condition reads the clock that no start has: the fourth decimal of the height.
+        return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
+
+    env = {"reward": ALIVE_ONLY | {"acceleration": 0.25}}
+    state, history, networks = run(fails_once_moved, env, discount=0.9, reward_scale=1.0)
+    assert history[-1]["walk/failures_per_1000_steps"] > 990.0
+    assert mean_value(state, networks) == pytest.approx(history[-1]["walk/reward"], abs=0.03)
+
+
+def test_it_learns_to_walk_to_goals_on_flat_ground():
+    _, history, _ = run(
+        environments=256, steps=256 * 20 * 30, unroll=20, minibatches=4, candidates=256
+    )
+    reward = [row["walk/reward"] for row in history]
+    assert np.mean(reward[-3:]) > np.mean(reward[:3]) + 0.25
+
+
+def test_running_statistics_learn_the_observation():
+    config = RunConfig.model_validate(
+        {"network": {"hidden": [8], "normaliser": "running"}, "ppo": SMALL | {"steps": 640 * 3}}
+    )
+    steering = SteeringEnv(config.env)
+    networks = make_networks(config.network, steering)
+    world = world_of(height_map(flat))
+    state = initial_state(config, steering, world, networks)
+    step = jax.jit(make_train_step(config, steering, networks))
+    for _ in range(3):
+        state, metrics = step(world, state)
+    assert all(bool(value) for name, value in metrics.items() if "finite/" in name)
+    heights = np.asarray(state.normaliser.mean)[4:]
+    assert np.all((heights < -0.5) & (heights > -1.4))
+    assert np.all(np.asarray(state.normaliser.std) >= 1e-2)  # constant inputs keep a floor
+
+
+def test_mirroring_flips_whole_robots_and_twice_is_none():
+    from jaxleas.training.brax_blocks import types
+
+    env = SteeringEnv(SteeringConfig())
+    key = jax.random.key(0)
+    shape = (5, 32)
+    batch = types.Transition(
+        observation=jax.random.normal(key, (*shape, env.layout.size)),
+        action=(),
+        reward=jnp.zeros(shape),
+        discount=jnp.ones(shape),
+        next_observation=jax.random.normal(key, (1, 32, env.layout.size)),
+        extras={
+            "policy_extras": {
+                "raw_action": jax.random.normal(key, (*shape, 4)),
+                "log_prob": jnp.zeros(shape),
+                "distribution_params": jax.random.normal(key, (*shape, 8)),
+            },
+            "state_extras": {"truncation": jnp.zeros(shape)},
+        },
+    )
+    once = _mirror_half(env, batch, jax.random.key(3))
+    twice = _mirror_half(env, once, jax.random.key(3))
+    jax.tree.map(np.testing.assert_array_equal, twice, batch)
+    flipped = np.any(np.asarray(once.observation != batch.observation), axis=(0, 2))
+    assert 8 < flipped.sum() < 24
+    sideways = np.asarray(once.extras["policy_extras"]["raw_action"][..., 1])
+    original = np.asarray(batch.extras["policy_extras"]["raw_action"][..., 1])
+    np.testing.assert_array_equal(sideways, np.where(flipped[None], -original, original))
+
+
+def test_the_train_step_compiles_once():
+    config = RunConfig.model_validate(
+        {"network": {"hidden": [8]}, "ppo": SMALL | {"steps": 640 * 3}}
+    )
+    steering = SteeringEnv(config.env)
+    networks = make_networks(config.network, steering)
+    world = world_of(height_map(flat))
+    step = make_train_step(config, steering, networks)
+    traces = 0
+
+    def counted(world, state):
+        nonlocal traces
+        traces += 1
+        return step(world, state)
+
+    compiled = jax.jit(counted, donate_argnums=1)
+    state = jax.jit(lambda: initial_state(config, steering, world, networks))()
+    for _ in range(3):
+        state, _ = compiled(world, state)
+    assert traces == 1
