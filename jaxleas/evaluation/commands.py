@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from jaxleas.evaluation.examination import (
-    evaluation_file,
     examine,
+    keep_evaluation,
     load_candidate,
     run_evaluations,
 )
@@ -30,7 +30,8 @@ def evaluate(
         run: a run folder, a policy.npz or an .onnx file.
         suite: transitions, hole, wall, circuit or dead_end.
         starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
-        json: where to write the result as well; a run folder keeps it in RUN/evaluation/.
+        json: where to write the result as well; a run folder keeps the one of most starts in
+            RUN/evaluation/.
         baseline: judge RB-Lin beside it.
         seed: of scenes and starts; training never sees any of them.
 
@@ -45,7 +46,7 @@ def evaluate(
         evaluation = examine(candidate, suite, starts, seed, baseline, reporter.say)
     print(plain_table(evaluation))
     if Path(run).is_dir():
-        write_evaluation(evaluation_file(Path(run), suite), evaluation)
+        keep_evaluation(Path(run), candidate, evaluation)
     if json is not None:
         write_evaluation(json, evaluation)
         print(f"written: {json}")

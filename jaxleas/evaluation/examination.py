@@ -139,3 +139,18 @@ def kept_evaluation(path: Path, candidate: Candidate) -> Evaluation | None:
     except InputError:  # of another version, or damaged: it is ours to make again
         return None
     return evaluation if evaluation.fingerprint == candidate.fingerprint else None
+
+
+def keep_evaluation(run: Path, candidate: Candidate, evaluation: Evaluation) -> None:
+    """Keep an evaluation in its run folder, unless one of more starts is there already.
+
+    A quick look with few starts must not replace what the report is made of.
+    """
+    path = evaluation_file(run, evaluation.suite)
+    kept = kept_evaluation(path, candidate)
+    if kept is None or _walks(kept) <= _walks(evaluation):
+        write_evaluation(path, evaluation)
+
+
+def _walks(evaluation: Evaluation) -> int:
+    return sum(cell.starts for cell in evaluation.cells)

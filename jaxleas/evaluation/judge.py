@@ -144,7 +144,8 @@ def path_lengths(
     """Return how far each root went, and the straight way through its waypoints [m].
 
     The straight way goes from the start over all waypoints but the last to where the path ends:
-    a roll-out ends within the goal's radius, not on the goal.
+    a roll-out ends within the goal's radius, not on the goal. Waypoints too are only passed within
+    that radius: over several of them a path may be a little shorter than the straight way.
     """
     position = walked.position.astype(np.float64)
     steps = np.linalg.norm(np.diff(position, axis=1), axis=-1)

@@ -111,10 +111,9 @@ def make_suite(name: str, starts: int | None = None, seed: int = 0) -> Suite:
         InputError: no suite has that name, or a number is out of range.
     """
     if name not in _RECIPES:
-        nearest = difflib.get_close_matches(name, SUITES, n=1, cutoff=0.0)[0]
-        raise InputError(
-            f"no suite is called {name!r}; did you mean {nearest!r}? There are {', '.join(SUITES)}"
-        )
+        close = difflib.get_close_matches(name, SUITES, n=1, cutoff=0.5)
+        hint = f"did you mean {close[0]!r}? There are" if close else "there are"
+        raise InputError(f"no suite is called {name!r}; {hint} {', '.join(SUITES)}")
     recipe = _RECIPES[name]
     starts = recipe.starts if starts is None else starts
     if not 1 <= starts <= MAX_STARTS:

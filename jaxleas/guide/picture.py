@@ -13,6 +13,7 @@ from jaxleas.types import GuidePath, InputError, Query
 STARTS: dict[Reason, str] = {"reached": "gold", "invalid": "black", "stopped": "white"}
 PATH, GOAL = "tab:blue", "red"
 ARROWS_EVERY = 15  # configurations
+ARROW_LENGTH = 0.2  # [m]
 MOST_PATHS = 200  # more would hide one another
 
 
@@ -55,8 +56,8 @@ def draw_guide_paths(
             *heading,
             angles="xy",
             scale_units="xy",
-            scale=7.0,  # arrows of 1 / 7 m
-            width=0.0025,
+            scale=1.0 / ARROW_LENGTH,
+            width=0.004,
             zorder=4,
         )
     for reason, colour in STARTS.items():
@@ -68,6 +69,8 @@ def draw_guide_paths(
             )
     goals = np.array([query.goal for _, _, query in shown])
     ax.scatter(*goals.T, s=30, c=GOAL, edgecolors="black", linewidths=0.5, label="goal", zorder=6)
+    x_min, x_max, y_min, y_max = terrain.extent
+    ax.set(xlim=(x_min, x_max), ylim=(y_min, y_max))  # a goal off the map is not shown
     ax.legend(loc="upper right", fontsize="small", framealpha=0.9)
     figure = ax.get_figure(root=True)
     assert figure is not None

@@ -40,10 +40,14 @@ class Atlas:
     ) -> Float[Array, "*batch points"]:
         """Return the terrain height [m] in the cell that holds each point, VOID off the map."""
         maps, rows, columns = self.heights.shape
-        offset = point_in_world - self.origin[map_index][..., None, :]
-        cell = jnp.floor(offset * (1.0 / self.resolution) + 0.5)
-        column = jnp.clip(cell[..., 0], 0, columns - 1).astype(jnp.int32)
-        row = jnp.clip(cell[..., 1], 0, rows - 1).astype(jnp.int32)
+        cells_per_metre = 1.0 / self.resolution
+
+        def cell(axis: int, count: int) -> Array:
+            offset = point_in_world[..., axis] - self.origin[map_index, axis][..., None]
+            nearest = jnp.floor(offset * cells_per_metre + 0.5)
+            return jnp.clip(nearest, 0, count - 1).astype(jnp.int32)
+
+        column, row = cell(0, columns), cell(1, rows)
         index = (map_index[..., None] * rows + row) * columns + column
         # One flat gather; the index is in range by construction, so XLA need not check it.
         return self.heights.reshape(maps * rows * columns).at[index].get(mode="promise_in_bounds")

@@ -14,6 +14,7 @@ import numpy as np
 from flax import struct
 from jax import Array
 from jaxtyping import Float
+from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import MotionLimits, SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
@@ -122,6 +123,10 @@ def read_policy(path: str | Path) -> SteeringPolicy:
         activation = str(metadata["activation"])
         if activation not in ACTIVATION:
             raise ValueError(f"activation {activation!r}")
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        raise InputError(f"{path}: config.{key} of its metadata: {first['msg']}") from error
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: its metadata is not a steering policy's: {error}") from error
     count = sum(name.startswith("kernel_") for name in arrays)

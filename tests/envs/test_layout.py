@@ -13,13 +13,19 @@ def test_sizes_are_the_published_ones():
 
 
 def test_reach_is_the_published_one():
-    """About 110 cm ahead, 50 cm behind, 60 cm a side (T sec. 3.2.2)."""
+    """About 110 cm ahead, 50 cm behind, 60 cm a side (T sec. 3.2.2), to the cells' far edges."""
     x, y = THESIS144.points_in_root.T
-    assert x.max() == pytest.approx(1.10, abs=0.06)
-    assert x.min() == pytest.approx(-0.50, abs=0.02)
-    assert y.max() == pytest.approx(0.60, abs=0.03)
+    assert x.max() + 0.15 / 2 == pytest.approx(1.10, abs=0.06)
+    assert x.min() - 0.17 / 2 == pytest.approx(-0.50, abs=0.02)
+    assert y.max() + 0.09 / 2 == pytest.approx(0.60, abs=0.03)
     assert sum(row > 0 for row in THESIS144.rows) == 7
     assert sum(row > 0 for row in ICRA81.rows) == 9
+
+
+@pytest.mark.parametrize("layout", LAYOUTS, ids=lambda layout: layout.name)
+def test_no_stripe_at_the_root_is_unseen(layout):
+    assert np.diff(layout.rows).max() <= 0.2
+    assert np.diff(layout.columns).max() <= 0.15
 
 
 @pytest.mark.parametrize("layout", LAYOUTS, ids=lambda layout: layout.name)

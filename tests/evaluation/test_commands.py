@@ -3,7 +3,12 @@ import shutil
 import pytest
 
 from jaxleas.evaluation.commands import evaluate, report
-from jaxleas.evaluation.examination import evaluation_file, kept_evaluation, load_candidate
+from jaxleas.evaluation.examination import (
+    evaluation_file,
+    keep_evaluation,
+    kept_evaluation,
+    load_candidate,
+)
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import read_evaluation
 from jaxleas.training.policy import write_policy
@@ -39,6 +44,11 @@ def test_an_evaluation_is_kept_for_the_policy_it_judged_only(run):
     assert kept_evaluation(path, candidate) is None
     evaluation = evaluate(run, suite="hole", starts=1, baseline=False)
     assert kept_evaluation(path, candidate) == evaluation
+    (cell,) = evaluation.cells
+    more = evaluation.model_copy(update={"cells": (cell.model_copy(update={"starts": 2}),)})
+    for each in (more, evaluation):  # the second is a quick look
+        keep_evaluation(run, candidate, each)
+        assert kept_evaluation(path, candidate) == more
     write_policy(run / "policy.npz", random_policy(seed=1))
     assert kept_evaluation(path, load_candidate(run)) is None
     path.write_text("{}")

@@ -54,6 +54,19 @@ def test_methods_walk_from_the_same_starts_in_the_suites_order(env, flat_suite):
     assert len(said) == 4
 
 
+def test_a_method_is_traced_once_for_all_cells(env, flat_suite):
+    calls = []
+
+    def still(heights_in_root, motion, goal):
+        calls.append(1)
+        return motion
+
+    judge(env, {"still": still}, replace(flat_suite, cells=flat_suite.cells[:1]))
+    once = len(calls)
+    judge(env, {"still": still}, flat_suite)
+    assert len(calls) == once > 0
+
+
 def test_path_lengths_by_hand():
     position = np.zeros((2, 4, 3), dtype=np.float32)
     position[0, :, 0] = [0.0, 3.0, 3.0, 3.0]

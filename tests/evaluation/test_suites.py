@@ -64,6 +64,8 @@ def test_dead_ends_must_be_stopped_at_and_all_else_be_crossed():
 def test_a_misspelt_suite_is_answered_with_the_nearest():
     with pytest.raises(InputError, match="did you mean 'dead_end'"):
         make_suite("deadends")
+    with pytest.raises(InputError, match="'q'; there are transitions, hole"):
+        make_suite("q")
 
 
 @pytest.mark.parametrize(

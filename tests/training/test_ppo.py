@@ -25,7 +25,12 @@ SMALL = {
     "steps": 64 * 10 * 60,
     "learning_rate": 3e-3,
     "final_learning_rate": 1e-4,
+    "final_failure": 0.0,
 }
+
+
+def always(heights, motion):
+    return jnp.ones_like(motion.yaw)
 
 
 def run(condition=None, env=None, **ppo):
@@ -45,6 +50,18 @@ def run(condition=None, env=None, **ppo):
     return state, history, networks
 
 
+def test_the_cost_of_failing_grows_from_the_environments_to_the_final_one():
+    """Nobody survives a step: the mean reward is the cost of failing, update by update."""
+
+    def fails_once_moved(heights, motion):
+        return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
+
+    env = {"reward": ALIVE_ONLY | {"failure": 1.0}}
+    _, history, _ = run(fails_once_moved, env, final_failure=5.0, steps=64 * 10 * 4)
+    cost = [-row["walk/reward"] for row in history]
+    np.testing.assert_allclose(cost, [1.0, 2.0, 3.0, 4.0], atol=0.05)
+
+
 def mean_value(state, networks) -> float:
     values = networks.value_network.apply(
         state.normaliser, state.params.value, state.observation
@@ -54,22 +71,23 @@ def mean_value(state, networks) -> float:
 
 def test_the_value_of_staying_alive_is_the_geometric_sum():
     """Reward 1 a step for ever: V = scale / (1 - discount)."""
-    state, _, networks = run(env={"reward": ALIVE_ONLY}, discount=0.8, reward_scale=0.5)
+    state, _, networks = run(always, {"reward": ALIVE_ONLY}, discount=0.8, reward_scale=0.5)
     assert mean_value(state, networks) == pytest.approx(0.5 / (1 - 0.8), rel=0.03)
 
 
 def test_nothing_follows_a_termination():
-    """A condition that always fails after the start: V is one step's reward, here 0 - 0.25."""
+    """Every first step fails, so V is the reward of that one step: what the failure costs."""
 
     def fails_once_moved(heights, motion):
-        # Starts are judged at rest or at most at 0.1 m/s; a step adds exactly nothing here, so
-        # the condition reads the clock that no start has: the fourth decimal of the height.
+        # Starts have no vertical velocity; after one step of a noisy policy everybody has.
         return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
 
-    env = {"reward": ALIVE_ONLY | {"acceleration": 0.25}}
-    state, history, networks = run(fails_once_moved, env, discount=0.9, reward_scale=1.0)
+    env = {"reward": ALIVE_ONLY | {"failure": 0.7}}
+    state, history, networks = run(
+        fails_once_moved, env, discount=0.9, reward_scale=1.0, final_failure=0.7
+    )
     assert history[-1]["walk/failures_per_1000_steps"] > 990.0
-    assert mean_value(state, networks) == pytest.approx(history[-1]["walk/reward"], abs=0.03)
+    assert mean_value(state, networks) == pytest.approx(-0.7, abs=0.03)
 
 
 def test_it_learns_to_walk_to_goals_on_flat_ground():
