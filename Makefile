@@ -11,7 +11,12 @@ DEV_STAMP := $(VENV)/.dev-installed
 .PHONY: train test test-all lint bench lock clean
 
 train: $(RUN_STAMP)
-	$(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR)
+	@if [ -e $(RUN_DIR)/config.yaml ]; then \
+	  echo "$(RUN_DIR) exists: going on with it (RUN_DIR=another starts anew)"; \
+	  $(BIN)/python train.py --resume $(RUN_DIR); \
+	else \
+	  $(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR); \
+	fi
 
 # Slow tests guard headline claims: `make test-all` runs them, and so does `make test` in CI.
 test: $(DEV_STAMP)

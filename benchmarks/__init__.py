@@ -1,0 +1,1 @@
+"""Benchmarks: how fast it is here, against what others use and against the machine's limit."""

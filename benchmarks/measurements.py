@@ -1,0 +1,146 @@
+"""What is measured, what came out, and the JSON file that holds it."""
+
+import math
+import os
+import platform
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Self
+
+import jax
+from pydantic import ValidationError
+
+from jaxleas.files import read_json, write_json
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+Better = Literal["higher", "lower"]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One line of the table.
+
+    Attributes:
+        name: begins with env_, ppo_, learn_ or export_.
+        unit: of its value.
+        better: the direction that is good.
+        tolerance: relative difference to the baseline that says nothing.
+        quick: measured by `--quick`, too.
+    """
+
+    name: str
+    unit: str
+    better: Better = "higher"
+    tolerance: float = 0.10
+    quick: bool = True
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What measuring a metric gave.
+
+    Attributes:
+        runs: one value a run; None where a run never got there.
+        limit: what the hardware allows, in the metric's unit; None if unknown.
+        rival: what the rival reaches, in the metric's unit; None if not measured.
+    """
+
+    runs: Sequence[float | None]
+    limit: float | None = None
+    rival: float | None = None
+
+
+class Measurement(Strict):
+    """One entry of a benchmark file."""
+
+    name: str
+    value: float | None
+    """Median of the runs; null if half of them never got there."""
+    unit: str
+    better: Better
+    runs: tuple[float | None, ...]
+    machine: str
+    rival: float | None
+    """The rival's figure for the same."""
+    ratio: float | None
+    """How many times better than the rival: above 1 we win, whatever the direction."""
+    limit: float | None
+    """What the hardware allows."""
+    of_limit: float | None
+    """Fraction of the limit that is reached, at most 1 if the limit is one."""
+
+    @classmethod
+    def of(cls, metric: Metric, figure: Figure, machine: str) -> Self:
+        """Return the entry for a figure: its median, ratio and fraction."""
+        value = median(figure.runs, metric.better)
+        return cls(
+            name=metric.name,
+            value=_rounded(value),
+            unit=metric.unit,
+            better=metric.better,
+            runs=tuple(_rounded(run) for run in figure.runs),
+            machine=machine,
+            rival=_rounded(figure.rival),
+            ratio=_rounded(_times_better(value, figure.rival, metric.better)),
+            limit=_rounded(figure.limit),
+            of_limit=_rounded(_times_better(value, figure.limit, metric.better)),
+        )
+
+
+def median(runs: Sequence[float | None], better: Better) -> float | None:
+    """Return the median, with a run that never got there as the worst of all."""
+    worst = -math.inf if better == "higher" else math.inf
+    value = statistics.median([worst if run is None else run for run in runs])
+    return value if math.isfinite(value) else None
+
+
+def write_measurements(path: str | Path, measurements: Sequence[Measurement]) -> None:
+    """Write a benchmark file, whole or not at all."""
+    write_json(path, [each.model_dump(mode="json") for each in measurements])
+
+
+def read_measurements(path: str | Path) -> list[Measurement]:
+    """Read a benchmark file.
+
+    Raises:
+        InputError: it is missing, no list, or an entry's key (named) is missing or unusable.
+    """
+    content = read_json(path)
+    if not isinstance(content, list):
+        raise InputError(f"{path} is no benchmark file: it needs a list of measurements")
+    measurements = []
+    for index, entry in enumerate(content):
+        try:
+            measurements.append(Measurement.model_validate(entry))
+        except ValidationError as error:
+            first = error.errors()[0]
+            key = ".".join(map(str, first["loc"])) or "entry"
+            raise InputError(f"{path}: entry {index}: {key}: {first['msg']}") from error
+    return measurements
+
+
+def this_machine() -> str:
+    """Return what the figures were measured on: processor, cores, and devices beside it."""
+    name = platform.processor() or platform.machine()
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model n"))
+    except (OSError, StopIteration):
+        pass
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    kinds = [each.device_kind for each in jax.devices() if each.platform != "cpu"]
+    devices = "".join(f"; {kinds.count(kind)} x {kind}" for kind in sorted(set(kinds)))
+    return f"{name}, {cores} cores{devices}"
+
+
+def _times_better(value: float | None, other: float | None, better: Better) -> float | None:
+    if not value or not other:
+        return None
+    return value / other if better == "higher" else other / value
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else float(f"{value:.5g}")

@@ -1,0 +1,156 @@
+"""Stable-Baselines3 on the steering task, timed; runs in a Python of its own.
+
+python -m benchmarks.rivals.sb3 TASK.npz OUT.json [--runs N] [--measure NAME ...]
+"""
+
+import argparse
+import json
+import resource
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch  # type: ignore[import-not-found]
+from stable_baselines3 import PPO  # type: ignore[import-not-found]
+from stable_baselines3.common.callbacks import BaseCallback  # type: ignore[import-not-found]
+from stable_baselines3.common.vec_env import (  # type: ignore[import-not-found]
+    DummyVecEnv,
+    SubprocVecEnv,
+    VecEnv,
+)
+
+from benchmarks.rivals.adapters import BatchedSteering, SingleSteering
+from benchmarks.rivals.steering_numpy import SteeringBatch
+from benchmarks.rivals.task import Task, read_task
+
+SIX = 6  # parallel agents M (T table 3.1)
+BATCH = 4096 * SIX  # steps between two updates (T table 3.1)
+BATCHED = 96  # robots of the batched environment: 256 steps each
+ENV_SIZES = (96, 1024)  # robots for the environment alone: the better one counts
+
+
+class _Clock(BaseCallback):
+    """Notes when each roll-out begins: from one to the next, an update is walked and learnt."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.begins: list[float] = []
+
+    def _on_rollout_start(self) -> None:
+        self.begins.append(time.perf_counter())
+
+    def _on_step(self) -> bool:
+        return True
+
+
+def make_ppo(envs: VecEnv) -> PPO:
+    """Return PPO with the thesis's hyperparameters (T table 3.1, sec. 3.4)."""
+    return PPO(
+        "MlpPolicy",
+        envs,
+        n_steps=BATCH // envs.num_envs,
+        batch_size=256,
+        n_epochs=10,
+        learning_rate=lambda left: 1e-5 + (5e-4 - 1e-5) * left,
+        gamma=0.97,
+        clip_range=0.2,
+        policy_kwargs={"net_arch": {"pi": [128, 64, 32], "vf": [128, 64, 32]}},
+        device="cpu",
+        seed=0,
+    )
+
+
+def train_rates(envs: VecEnv, runs: int) -> list[float]:
+    """Return steps of training a second, one value an update, the first left out."""
+    clock = _Clock()
+    make_ppo(envs).learn((runs + 1) * BATCH, callback=clock)
+    ends = [*clock.begins[1:], time.perf_counter()]
+    envs.close()
+    return [BATCH / (end - begin) for begin, end in zip(clock.begins, ends, strict=True)][1:]
+
+
+def env_rates(task: Task, runs: int) -> list[float]:
+    """Return steps a second of the environment alone, under random actions: of the best size."""
+    return max((_env_rates(task, count, runs) for count in ENV_SIZES), key=np.median)
+
+
+def _env_rates(task: Task, count: int, runs: int) -> list[float]:
+    batch = SteeringBatch(task, count)
+    rates, steps = [], max(20, 40_000 // count)
+    for run in range(runs + 1):
+        begin = time.perf_counter()
+        for _ in range(steps):
+            outcome = batch.step(batch.random.uniform(-1, 1, (count, 4)).astype(np.float32))
+            done = outcome.terminated | outcome.truncated
+            if done.any():
+                batch.restart(done)
+                outcome.observation[done] = batch.observe()[done]
+        if run:
+            rates.append(count * steps / (time.perf_counter() - begin))
+    return rates
+
+
+def latencies(task: Task, runs: int, count: int) -> list[float]:
+    """Return the microseconds that `predict` takes for so many observations."""
+    envs = BatchedSteering(task, count)
+    model = make_ppo(BatchedSteering(task, BATCHED))
+    observation = envs.reset()
+    values = []
+    for run in range(runs + 1):
+        begin, calls = time.perf_counter(), 0
+        while time.perf_counter() - begin < 0.3:
+            model.predict(observation, deterministic=True)
+            calls += 1
+        if run:
+            values.append(1e6 * (time.perf_counter() - begin) / calls)
+    return values
+
+
+def peak_memory(task: Task) -> list[float]:
+    """Return the most memory this process has held so far, after an update [MiB]."""
+    train_rates(BatchedSteering(task, BATCHED), 1)
+    return [resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0]
+
+
+def six_environments(task: Task, runs: int) -> list[float]:
+    """Return the better of SB3's two ways to hold six environments: in line, or a process each."""
+    makers = [partial(SingleSteering, task, seed) for seed in range(SIX)]
+    ways: list[Callable[[], VecEnv]] = [
+        lambda: DummyVecEnv(makers),
+        lambda: SubprocVecEnv(makers),
+    ]
+    return max((train_rates(way(), runs) for way in ways), key=np.median)
+
+
+MEASURES: dict[str, Callable[[Task, int], list[float]]] = {
+    "memory": lambda task, runs: peak_memory(task),  # first: memory only grows
+    "env": env_rates,
+    "batched": lambda task, runs: train_rates(BatchedSteering(task, BATCHED), runs),
+    "six": six_environments,
+    "latency_1": lambda task, runs: latencies(task, runs, 1),
+    "latency_1024": lambda task, runs: latencies(task, runs, 1024),
+}
+
+
+def main() -> None:
+    """Measure what was asked for; write it as one JSON object of lists."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("task", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--measure", nargs="+", choices=MEASURES, default=list(MEASURES))
+    given = parser.parse_args()
+    torch.set_num_threads(torch.get_num_threads())
+    task = read_task(given.task)
+    results: dict[str, Any] = {}
+    for name, measure in MEASURES.items():
+        if name in given.measure:
+            results[name] = measure(task, given.runs)
+    given.out.write_text(json.dumps(results), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

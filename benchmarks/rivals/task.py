@@ -1,0 +1,42 @@
+"""The steering task as plain numbers, read from a file."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ARRAYS = ("heights", "origin", "map_index", "start_area", "goal_area", "arena_area", "share")
+
+
+@dataclass(frozen=True)
+class Task:
+    """Terrain, links and constants.
+
+    Attributes:
+        heights: of every map, float32 [maps, rows, columns]; far below where there is no ground.
+        origin: x, y of the centre of each map's first cell [m].
+        map_index: of each link.
+        start_area: x_min, x_max, y_min, y_max of each link's start area [m].
+        goal_area: likewise of its goal area.
+        arena_area: likewise of its arena.
+        share: cumulative share of the starts.
+        constants: everything else: layout, limits, weights, robot; see `write_task`.
+    """
+
+    heights: np.ndarray
+    origin: np.ndarray
+    map_index: np.ndarray
+    start_area: np.ndarray
+    goal_area: np.ndarray
+    arena_area: np.ndarray
+    share: np.ndarray
+    constants: dict[str, Any]
+
+
+def read_task(path: str | Path) -> Task:
+    """Read a task file."""
+    with np.load(path, allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in ARRAYS}
+        return Task(**arrays, constants=json.loads(str(archive["constants"])))

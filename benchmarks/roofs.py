@@ -1,0 +1,159 @@
+"""The machine's roofs, measured in the same run: matrix products, memory, gathers."""
+
+from collections.abc import Callable
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from benchmarks.arithmetic import LOGITS, Rates, gradient_flops, layers
+from benchmarks.timing import seconds_a_call
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.terrain.atlas import Atlas
+from jaxleas.training.config import RunConfig
+
+LARGE = 2048  # side of the large matrices
+PASSES = 8  # over memory within one call, so that starting it costs nothing
+RUNS = 3
+
+
+class Roofs:
+    """Measures each roof once, when it is first asked for.
+
+    Args:
+        atlas: to gather from.
+    """
+
+    def __init__(self, atlas: Atlas) -> None:
+        self._atlas = atlas
+        self._known: dict[tuple[object, ...], float] = {}
+
+    def rates(self, config: RunConfig, env: SteeringEnv, robots: int, matrix: bool) -> Rates:
+        """Return what the machine does at these sizes.
+
+        Args:
+            config: of the training; its networks' own products are measured.
+            env: the task; its own gather is measured.
+            robots: environments at once: they set what fits into a cache.
+            matrix: whether the rate of products is needed (it is infinite otherwise).
+        """
+        words = robots * (len(env.points_in_root) + env.layout.size)
+        fastest = max(self.large_products(), self.network_products(config, env)) if matrix else 0.0
+        return Rates(
+            matrix=fastest or float("inf"), memory=self.memory(words), gather=self.gather(env, robots)
+        )
+
+    def large_products(self) -> float:
+        """Return the rate of large float32 matrix products [FLOP/s]."""
+        return self._once(("large",), _large_products)
+
+    def network_products(self, config: RunConfig, env: SteeringEnv) -> float:
+        """Return the rate of the products of one minibatch's gradient, and of nothing else."""
+        samples = config.ppo.batch // config.ppo.minibatches
+        sizes = (samples, env.layout.size, *config.network.hidden)
+        return self._once(("network", *sizes), lambda: _network_products(*sizes))
+
+    def memory(self, words: int) -> float:
+        """Return the bandwidth over an array of so many four-byte words [B/s]."""
+        return self._once(("memory", words), lambda: _memory(words))
+
+    def gather(self, env: SteeringEnv, robots: int) -> float:
+        """Return how many heights a second are gathered under so many robots."""
+        key = ("gather", env.layout.name, robots)
+        return self._once(key, lambda: _gather(self._atlas, env, robots))
+
+    def _once(self, key: tuple[object, ...], measure: Callable[[], float]) -> float:
+        if key not in self._known:
+            self._known[key] = measure()
+        return self._known[key]
+
+
+def _seconds(call: Callable[[], Array]) -> float:
+    # The fastest run: a roof is what the machine can do, not what it usually does.
+    return min(seconds_a_call(call, RUNS, least_seconds=0.3))
+
+
+def _normal(seed: int, *shape: int) -> Array:
+    return jax.random.normal(jax.random.key(seed), shape, dtype=jnp.float32)
+
+
+def _large_products() -> float:
+    left, right = _normal(0, LARGE, LARGE), _normal(1, LARGE, LARGE)
+    product = jax.jit(jnp.matmul)
+    return 2.0 * LARGE**3 / _seconds(lambda: product(left, right))
+
+
+def _network_products(samples: int, inputs: int, *hidden: int) -> float:
+    """Time three products a layer, operands ready: forward, weights' and inputs' gradients."""
+    networks = [layers(inputs, hidden, outputs) for outputs in (LOGITS, 1)]
+    operands = []
+    for network in networks:
+        for index, (rows, columns) in enumerate(network):
+            values = _normal(2, samples, rows), _normal(3, rows, columns), _normal(4, samples, columns)
+            operands.append((*values, index > 0))
+    arrays = [each[:3] for each in operands]
+    needed = [each[3] for each in operands]
+
+    @jax.jit
+    def products(arrays):
+        results = []
+        for (value, kernel, gradient), input_gradient in zip(arrays, needed, strict=True):
+            results += [value @ kernel, value.T @ gradient]
+            if input_gradient:
+                results.append(gradient @ kernel.T)
+        return results
+
+    flops = samples * sum(gradient_flops(network) for network in networks)
+    return flops / _seconds(lambda: products(arrays))
+
+
+def _memory(words: int) -> float:
+    shift = jax.jit(
+        lambda array: jax.lax.fori_loop(0, PASSES, lambda _, carry: carry + 1.0, array),
+        donate_argnums=0,
+    )
+    held = [jnp.zeros(words, dtype=jnp.float32)]
+
+    def call() -> Array:
+        held[0] = shift(held[0])
+        return held[0]
+
+    return 2.0 * 4.0 * words * PASSES / _seconds(call)
+
+
+def _gather(atlas: Atlas, env: SteeringEnv, robots: int) -> float:
+    """Gather heights under robots spread over the atlas, their indices ready."""
+    index = _height_indices(atlas, env, robots)
+    flat = atlas.heights.reshape(-1)
+
+    @partial(jax.jit, donate_argnums=2)
+    def gather(flat, index, heights):
+        def once(number, _):
+            return flat.at[index + number].get(mode="promise_in_bounds")
+
+        return jax.lax.fori_loop(0, PASSES, once, heights)
+
+    held = [jnp.zeros(index.shape, dtype=jnp.float32)]
+
+    def call() -> Array:
+        held[0] = gather(flat, index, held[0])
+        return held[0]
+
+    return PASSES * index.size / _seconds(call)
+
+
+def _height_indices(atlas: Atlas, env: SteeringEnv, robots: int) -> Array:
+    """Return where the points of robots at random places of the atlas lie in its flat array."""
+    random = np.random.default_rng(0)
+    maps, rows, columns = atlas.heights.shape
+    yaw = random.uniform(-np.pi, np.pi, (robots, 1))
+    ahead, left = env.points_in_root.T
+    x = (np.cos(yaw) * ahead - np.sin(yaw) * left) / atlas.resolution
+    y = (np.sin(yaw) * ahead + np.cos(yaw) * left) / atlas.resolution
+    column = np.clip(x + random.uniform(0, columns, (robots, 1)), 0, columns - 1).astype(np.int32)
+    row = np.clip(y + random.uniform(0, rows, (robots, 1)), 0, rows - 1).astype(np.int32)
+    index = (random.integers(0, maps, (robots, 1)) * rows + row) * columns + column
+    return jnp.asarray(np.minimum(index, maps * rows * columns - PASSES), dtype=jnp.int32)
+

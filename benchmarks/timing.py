@@ -1,0 +1,35 @@
+"""Timing: warm up once, then a few runs, each long enough to mean something."""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import jax
+
+
+def seconds_a_call(call: Callable[[], Any], runs: int, least_seconds: float = 0.5) -> list[float]:
+    """Return the seconds a call takes, one mean a run.
+
+    Args:
+        call: may return before the device is done; what it returns is waited for.
+        runs: number of runs.
+        least_seconds: a run repeats the call for about this long [s].
+    """
+    jax.block_until_ready(call())  # compiles
+    begin = time.perf_counter()
+    jax.block_until_ready(call())
+    once = time.perf_counter() - begin
+    repeats = max(1, math.ceil(least_seconds / max(once, 1e-7)))
+    if repeats > 1:  # a single short call is timed too long: its first estimate is refined
+        repeats = max(1, math.ceil(least_seconds / max(_mean(call, min(repeats, 10)), 1e-7)))
+    return [_mean(call, repeats) for _ in range(runs)]
+
+
+def _mean(call: Callable[[], Any], repeats: int) -> float:
+    begin = time.perf_counter()
+    result = None
+    for _ in range(repeats):
+        result = call()
+    jax.block_until_ready(result)
+    return (time.perf_counter() - begin) / repeats
