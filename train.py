@@ -9,8 +9,14 @@ import sys
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jaxleas.cli_guard import UsageError, run_guarded
+
+# JAX takes a second to import: not before the command line has been understood.
+if TYPE_CHECKING:
+    from jaxleas.training.config import RunConfig
+    from jaxleas.training.run_folder import RunFolder
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -24,23 +30,34 @@ def main(arguments: Sequence[str]) -> None:
     if given.resume and (overrides or given.run_dir):
         surplus = overrides or ["--run-dir"]
         raise UsageError(f"--resume goes on exactly as configured: leave out {' '.join(surplus)}")
-
-    from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config, to_yaml
-    from jaxleas.training.run_folder import RunFolder
-
-    if given.resume:
-        run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
-        config = load_config(RunConfig, run.config)
-    else:
-        config = load_config(RunConfig, given.config, overrides)
-        name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
-        run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
+    config, run = _go_on(given.resume) if given.resume else _begin(given, overrides, arguments)
     with run:
         _run(config, run)
 
 
-def _run(config, run) -> None:
+def _go_on(folder: str) -> "tuple[RunConfig, RunFolder]":
+    from jaxleas.training.config import RunConfig
+    from jaxleas.training.configuration import load_config
+    from jaxleas.training.run_folder import RunFolder
+
+    run = RunFolder.open(folder, writing=True, needs_checkpoint=False)
+    return load_config(RunConfig, run.config), run
+
+
+def _begin(
+    given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
+) -> "tuple[RunConfig, RunFolder]":
+    from jaxleas.training.config import RunConfig
+    from jaxleas.training.configuration import load_config, to_yaml
+    from jaxleas.training.run_folder import RunFolder
+
+    config = load_config(RunConfig, given.config, overrides)
+    name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
+    run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
+    return config, run
+
+
+def _run(config: "RunConfig", run: "RunFolder") -> None:
     from jaxleas.evaluation.commands import evaluate, report
     from jaxleas.export.commands import export
     from jaxleas.training.compilation import keep_compiled_programs

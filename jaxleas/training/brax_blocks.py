@@ -37,19 +37,24 @@ def _register_shell() -> None:
 if "brax" not in sys.modules:
     _register_shell()
 
-from brax.training import types  # noqa: E402
 from brax.training.acme import running_statistics, specs  # noqa: E402
-from brax.training.agents.ppo.losses import PPONetworkParams, compute_ppo_loss  # noqa: E402
+from brax.training.agents.ppo import losses  # noqa: E402
+from brax.training.agents.ppo.losses import compute_ppo_loss  # noqa: E402
 from brax.training.agents.ppo.networks import PPONetworks, make_ppo_networks  # noqa: E402
 from brax.training.networks import ACTIVATION  # noqa: E402
+from brax.training.types import Transition as _Transition  # noqa: E402
+
+# Any pytree may fill these two; Brax's annotations say "an array" and type checkers believe them.
+PPONetworkParams: Any = losses.PPONetworkParams
+Transition: Any = _Transition
 
 __all__ = [
     "ACTIVATION",
     "PPONetworkParams",
     "PPONetworks",
+    "Transition",
     "compute_ppo_loss",
     "make_ppo_networks",
     "running_statistics",
     "specs",
-    "types",
 ]

@@ -75,7 +75,7 @@ class PpoConfig(Strict):
     entropy: NonNegative = 0.003
     value_weight: NonNegative = 0.5
     reward_scale: Positive = 0.1
-    final_failure: NonNegative = 60.0
+    final_failure: NonNegative = 20.0
     """env.reward.failure grows linearly to this. At first falling must be cheap, or nobody dares to
     set foot on a bridge; in the end it must be dear, or turning while walking backwards towards an
     edge pays although one in ten falls."""
@@ -112,7 +112,7 @@ class HeldOutConfig(Strict):
 
     every: Count = 10
     """Policy updates between two examinations (and checkpoints)."""
-    starts: Count = 512
+    starts: Count = 1024
     arenas: Count = 16
     steps: Count = 500
     """A start that has not reached its goal by then has failed."""

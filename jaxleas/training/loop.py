@@ -7,6 +7,7 @@ from typing import Any
 import jax
 from jax import Array
 
+from jaxleas.conditions import Condition
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.checkpoints import Checkpoints
@@ -42,6 +43,7 @@ class Trainer:
 
     Attributes:
         config: of the run.
+        condition: that ends episodes; by default the environment's own, R* and C.
         env: the task.
         world: terrains to train on.
         held_out: terrains of the examination.
@@ -51,6 +53,7 @@ class Trainer:
     """
 
     config: RunConfig
+    condition: Condition | None = None
     env: SteeringEnv = field(init=False)
     world: World = field(init=False)
     held_out: World = field(init=False)
@@ -62,7 +65,7 @@ class Trainer:
 
     def __post_init__(self) -> None:
         config = self.config
-        self.env = SteeringEnv(config.env)
+        self.env = SteeringEnv(config.env, self.condition)
         self.world = training_world(config)
         self.held_out = held_out_world(config)
         networks = make_networks(config.network, self.env)
@@ -76,7 +79,7 @@ class Trainer:
         return policy_of(self.env, self.config.network.activation, state.normaliser, state.averaged)
 
 
-def train(config: RunConfig, run: RunFolder) -> SteeringPolicy:
+def train(config: RunConfig, run: RunFolder, condition: Condition | None = None) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
     A folder that holds checkpoints is gone on with from the newest, exactly as if the run had
@@ -85,6 +88,7 @@ def train(config: RunConfig, run: RunFolder) -> SteeringPolicy:
     Args:
         config: of the run.
         run: folder held for writing.
+        condition: that ends episodes, in place of R* and C.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -93,7 +97,7 @@ def train(config: RunConfig, run: RunFolder) -> SteeringPolicy:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
     """
-    trainer = Trainer(config)
+    trainer = Trainer(config, condition)
     checkpoints = Checkpoints(run.checkpoints)
     resuming = bool(checkpoints.steps())
     if resuming:

@@ -13,7 +13,7 @@ from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts, restart_where
 from jaxleas.envs.steering.world import World
-from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks, compute_ppo_loss, types
+from jaxleas.training.brax_blocks import PPONetworks, Transition, compute_ppo_loss
 from jaxleas.training.config import RunConfig
 from jaxleas.training.networks import update_normaliser
 from jaxleas.training.train_state import TrainState, make_optimiser
@@ -61,7 +61,7 @@ def make_train_step(config: RunConfig, env: SteeringEnv, networks: PPONetworks) 
     return train_step
 
 
-def _average(decay: float, state: TrainState, params: PPONetworkParams) -> Any:
+def _average(decay: float, state: TrainState, params: Any) -> Any:
     """Return the exponential average of the actor, over fewer updates while there are few."""
     count = state.update.astype(jnp.float32) + 1.0
     decay_now = jnp.minimum(decay, count / (count + 10.0))
@@ -102,7 +102,7 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
             after, outcome = env.step(world.atlas, weights, episode, action)
             done = outcome.terminated | outcome.truncated
             carry = restart_where(done, after, outcome.observation, pool, key_now)
-            record = types.Transition(
+            record = Transition(
                 observation=observation,
                 action=(),
                 reward=outcome.reward,
@@ -162,7 +162,7 @@ def _make_learn(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> C
             vf_coefficient=ppo.value_weight,
         )
 
-    def learn(state: TrainState, normaliser, batch: types.Transition, key: Array):
+    def learn(state: TrainState, normaliser, batch: Any, key: Array):
         def minibatch_step(carry, inputs):
             params, moments = carry
             chosen, minibatch_key = inputs
@@ -194,7 +194,7 @@ def _make_learn(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> C
     return learn
 
 
-def _mirror_half(env: SteeringEnv, batch: types.Transition, key: Array) -> types.Transition:
+def _mirror_half(env: SteeringEnv, batch: Any, key: Array) -> Any:
     """Swap left and right for a random half of the robots in a minibatch [time, robots].
 
     The task is symmetric, so a mirrored step is as good as a walked one; its log-probability under
@@ -208,7 +208,7 @@ def _mirror_half(env: SteeringEnv, batch: types.Transition, key: Array) -> types
     def mirrored(observation: Array) -> Array:
         return jnp.where(flip, observation[..., permutation] * sign, observation)
 
-    extras = batch.extras["policy_extras"]  # type: ignore[index]
+    extras = batch.extras["policy_extras"]
     raw = extras["raw_action"]
     logits = extras["distribution_params"]
     logit_sign = jnp.concatenate([action_sign, jnp.ones_like(action_sign)], axis=-1)
@@ -216,7 +216,7 @@ def _mirror_half(env: SteeringEnv, batch: types.Transition, key: Array) -> types
         observation=mirrored(batch.observation),
         next_observation=mirrored(batch.next_observation),
         extras={
-            **batch.extras,  # type: ignore[dict-item]
+            **batch.extras,
             "policy_extras": {
                 **extras,
                 "raw_action": jnp.where(flip, raw * action_sign, raw),

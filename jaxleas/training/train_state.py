@@ -33,7 +33,7 @@ class TrainState:
         update: policy updates done.
     """
 
-    params: PPONetworkParams
+    params: Any
     averaged: Any
     optimiser: optax.OptState
     normaliser: Normaliser

@@ -29,9 +29,7 @@ def test_every_start_is_valid_and_its_goal_can_be_stood_at(env, arena_world):
     state, observation = take(pool, jax.random.key(1), 400)
     heights = env.local_heights(arena_world.atlas, state.plan.map_index, state.motion)
     assert np.all(env.condition(heights, state.motion) >= 0.0)
-    np.testing.assert_array_equal(
-        observation, env.observe(heights, state.motion, env.goal(state))
-    )
+    np.testing.assert_array_equal(observation, env.observe(heights, state.motion, env.goal(state)))
     goal_ground = arena_world.atlas.height_at(state.plan.map_index, env.goal(state)[:, None])
     assert np.all(goal_ground > -100.0)
 
@@ -107,14 +105,18 @@ def test_starts_are_shared_among_the_kinds_of_links_as_asked(env):
     state, _ = take(draw_starts(env, world, jax.random.key(0), 512), jax.random.key(1), 300)
     starts = np.asarray(state.motion.position[:, :2])
     allowed = np.asarray(world.start_area)[share > 0]
-    inside = np.all((starts[:, None] >= allowed[:, 0::2]) & (starts[:, None] <= allowed[:, 1::2]), -1)
+    inside = np.all(
+        (starts[:, None] >= allowed[:, 0::2]) & (starts[:, None] <= allowed[:, 1::2]), -1
+    )
     assert np.all(inside.any(axis=1))
 
 
 def test_shares_that_no_link_can_serve_are_refused():
     arenas = [generate_arena(GeneratorConfig(rows=1, columns=2), 0)]
     kinds = {link.kind for link in arenas[0].links}
-    shares = dict.fromkeys(("bridge", "stairs_up", "stairs_down", "rubble", "obstacles", "flat"), 0.0)
+    shares = dict.fromkeys(
+        ("bridge", "stairs_up", "stairs_down", "rubble", "obstacles", "flat"), 0.0
+    )
     assert kinds
     with pytest.raises(InputError, match=r"terrain\.shares"):
         make_world(arenas, 0.04, shares)

@@ -39,6 +39,7 @@ def world_of(*maps: HeightMap) -> World:
         atlas=make_atlas(maps),
         map_index=jnp.arange(len(maps), dtype=jnp.int32),
         start_area=jnp.asarray(start),
+        near_area=jnp.asarray(start),
         goal_area=jnp.asarray(goal),
         arena_area=jnp.asarray(areas),
         cumulative_share=jnp.linspace(1 / len(maps), 1.0, len(maps)),

@@ -63,9 +63,7 @@ def test_the_cost_of_failing_grows_from_the_environments_to_the_final_one():
 
 
 def mean_value(state, networks) -> float:
-    values = networks.value_network.apply(
-        state.normaliser, state.params.value, state.observation
-    )
+    values = networks.value_network.apply(state.normaliser, state.params.value, state.observation)
     return float(jnp.mean(values))
 
 
@@ -116,12 +114,12 @@ def test_running_statistics_learn_the_observation():
 
 
 def test_mirroring_flips_whole_robots_and_twice_is_none():
-    from jaxleas.training.brax_blocks import types
+    from jaxleas.training.brax_blocks import Transition
 
     env = SteeringEnv(SteeringConfig())
     key = jax.random.key(0)
     shape = (5, 32)
-    batch = types.Transition(
+    batch = Transition(
         observation=jax.random.normal(key, (*shape, env.layout.size)),
         action=(),
         reward=jnp.zeros(shape),

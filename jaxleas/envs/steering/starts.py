@@ -49,11 +49,13 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
         key: consumed here.
         count: number of candidates.
     """
-    link_key, place_key, motion_key, goal_key = jax.random.split(key, 4)
+    link_key, place_key, motion_key, goal_key, wander_key = jax.random.split(key, 5)
     link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
     plan = _draw_plan(env, world, link, goal_key)
     motion = _draw_motion(env, world, link, place_key, motion_key)
     state = env.start(motion, plan)
+    wanders = jax.random.bernoulli(wander_key, env.config.wander_share, (count,))
+    state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
     heights = env.local_heights(world.atlas, plan.map_index, motion)
     arrival = _arrival(env, world, motion, plan)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
@@ -95,7 +97,10 @@ def restart_where(
 def _draw_motion(
     env: SteeringEnv, world: World, link: Array, place_key: Array, motion_key: Array
 ) -> RootMotion:
-    horizontal = _uniform_in(world.start_area[link], place_key)
+    area_key, place_key = jax.random.split(place_key)
+    near = jax.random.bernoulli(area_key, env.config.near_share, link.shape)
+    area = jnp.where(near[:, None], world.near_area[link], world.start_area[link])
+    horizontal = _uniform_in(area, place_key)
     yaw_key, speed_key, height_key = jax.random.split(motion_key, 3)
     shape = (len(link),)
     yaw = jax.random.uniform(yaw_key, shape, minval=-jnp.pi, maxval=jnp.pi)

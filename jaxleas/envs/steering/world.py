@@ -11,8 +11,11 @@ from jaxtyping import Float, Int
 
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.generator import Arena
+from jaxleas.terrain.links import Link
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types.errors import InputError
+
+NEAR = 0.8  # depth of the strip that counts as near to what is to be crossed [m]
 
 
 @struct.dataclass
@@ -23,6 +26,7 @@ class World:
         atlas: the height maps.
         map_index: of each link's arena in the atlas.
         start_area: x_min, x_max, y_min, y_max where a link's crossing starts [m].
+        near_area: the strip of it next to what is to be crossed [m].
         goal_area: likewise where it ends [m].
         arena_area: likewise of each link's whole arena, for random goals [m].
         cumulative_share: of the starts that fall on each link and those before it; ends at 1.
@@ -31,6 +35,7 @@ class World:
     atlas: Atlas
     map_index: Int[Array, " links"]
     start_area: Float[Array, "links 4"]
+    near_area: Float[Array, "links 4"]
     goal_area: Float[Array, "links 4"]
     arena_area: Float[Array, "links 4"]
     cumulative_share: Float[Array, " links"]
@@ -61,10 +66,23 @@ def make_world(
         atlas=make_atlas(maps),
         map_index=jnp.asarray([index for index, _ in links], dtype=jnp.int32),
         start_area=_areas([link.start_area for _, link in links]),
+        near_area=_areas([_near(link) for _, link in links]),
         goal_area=_areas([link.goal_area for _, link in links]),
         arena_area=_areas([extents[index] for index, _ in links]),
         cumulative_share=_cumulative([link.kind for _, link in links], shares),
     )
+
+
+def _near(link: Link) -> tuple[float, ...]:
+    """Return the last stretch of a start area before what is to be crossed."""
+    area = np.array(link.start_area)
+    for axis, direction in enumerate(link.direction):
+        low, high = 2 * axis, 2 * axis + 1
+        if direction > 0:
+            area[low] = max(area[low], area[high] - NEAR)
+        elif direction < 0:
+            area[high] = min(area[high], area[low] + NEAR)
+    return tuple(area)
 
 
 def _cumulative(kinds: Sequence[str], shares: Mapping[str, float] | None) -> Array:
