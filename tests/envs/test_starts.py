@@ -1,3 +1,5 @@
+import itertools
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -68,7 +70,7 @@ def test_no_start_is_replayed(env, arena_world):
         pool = draw_starts(env, arena_world, pool_key, 256)
         state, observation = restart_where(done, state, observation, pool, take_key)
         seen.append(np.asarray(state.motion.position))
-    for earlier, later in zip(seen, seen[1:], strict=False):
+    for earlier, later in itertools.pairwise(seen):
         assert not np.any(np.all(earlier[:, None] == later[None], axis=-1))
 
 

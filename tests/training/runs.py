@@ -30,7 +30,7 @@ def tiny(**ppo) -> RunConfig:
 
 
 def start_training(*arguments: str, cache: Path) -> subprocess.Popen:
-    """Start `python train.py ...` with a compile cache of its own, so that only one start is slow."""
+    """Start `python train.py ...` with a compile cache of its own: one start is slow, not all."""
     return subprocess.Popen(
         [sys.executable, "train.py", *arguments],
         cwd=ROOT,

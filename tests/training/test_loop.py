@@ -63,7 +63,7 @@ def test_numbers_that_are_not_finite_stop_the_run_and_keep_the_last_good_state(t
         pytest.raises(NonFiniteError, match=r"update \d+ .* non-finite .* parameters"),
     ):
         train(config, run)
-    name, arrays = checkpoint_arrays(tmp_path / "run")
+    _name, arrays = checkpoint_arrays(tmp_path / "run")
     assert all(np.all(np.isfinite(value)) for value in arrays.values() if value.dtype.kind == "f")
 
 

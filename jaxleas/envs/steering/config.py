@@ -1,9 +1,9 @@
 """The constants of the steering task (T table 3.1)."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from jaxleas.types.strict import Strict
 
@@ -27,16 +27,16 @@ class MotionLimits(Strict):
 class RewardWeights(Strict):
     """Weights of the reward's five terms (T sec. 3.2.4)."""
 
-    direction: NonNegative = 2.0
-    """w_dir. The thesis has 1.0; 2.0 makes crossing pay clearly more than standing still."""
+    direction: NonNegative = 3.0
+    """w_dir. The thesis has 1.0; 3.0 makes crossing pay clearly more than standing still."""
     orientation: NonNegative = 0.4
     """w_ori."""
     turn: NonNegative = 0.1
     """w_omega, on the squared turn rate."""
     acceleration: NonNegative = 0.1
     """w_acc, on the squared acceleration."""
-    alive: NonNegative = 1.0
-    """w_alive, for every valid configuration."""
+    alive: NonNegative = 0.6
+    """w_alive, for every valid configuration. The thesis has 1.0."""
     failure: NonNegative = 0.0
     """Taken off for an invalid configuration, beyond what not being alive any more costs. The
     thesis has none; training lets it grow (ppo.final_failure)."""
@@ -68,3 +68,14 @@ class SteeringConfig(Strict):
     """A goal lasts a random number of steps in this range, or until it is reached."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.height_low >= self.height_high:
+            raise ValueError(
+                f"height_low = {self.height_low} must be below height_high = {self.height_high}"
+            )
+        low, high = self.goal_steps
+        if low > high:
+            raise ValueError(f"goal_steps = [{low}, {high}] must be [least, most]")
+        return self
