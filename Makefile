@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CONFIG ?= configs/leas_p1.yaml
 RUN_DIR ?= runs/leas_p1
+BENCH ?=
 # The seven dependencies of the test tools are not needed to train: two locked lists, two stamps.
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
@@ -29,6 +30,9 @@ lint: $(DEV_STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
+
+bench: $(DEV_STAMP)
+	$(BIN)/python -m benchmarks $(BENCH)
 
 # Locked for every platform and Python at once; the lists name no registry.
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 \

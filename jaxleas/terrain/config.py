@@ -76,6 +76,22 @@ class StairsConfig(Strict):
     """that the steps do not fill the tile: fewer, higher ones between two flat landings"""
 
 
+class DetourConfig(Strict):
+    """Level transition that has to be walked round: a hole in the ground, or a wall across it."""
+
+    length: Interval = (0.3, 1.6)
+    """of the hole along the crossing [m]"""
+    thickness: Interval = (0.15, 0.4)
+    """of the wall [m]"""
+    height: Interval = (0.7, 2.0)
+    """of the wall above the tile [m]"""
+    width: Interval = (0.5, 1.1)
+    """of the hole or wall across the crossing [m]: from anywhere before it a way round lies within
+    the 0.6 m that a local policy sees to a side"""
+    rim: PositiveFloat = 0.45
+    """of the ground beside the hole, at either side at least [m]"""
+
+
 class GeneratorConfig(Strict):
     """An arena of tiles: initial ones (flat, obstacles) joined by transitions."""
 
@@ -91,6 +107,8 @@ class GeneratorConfig(Strict):
     """that an initial tile is followed by a transition; else by another initial tile"""
     dead_end_probability: Probability = 0.3
     """that a transition which cannot be continued is built all the same, and leads nowhere"""
+    detour_probability: Probability = 0.0
+    """that a transition into the empty is a hole or a wall; the thesis's generator has none"""
     stairs_probability: Probability = 0.55
     """that a transition into the empty is stairs"""
     bridge_probability: Probability = 0.30
@@ -101,12 +119,15 @@ class GeneratorConfig(Strict):
     """two initial tiles of a smaller height difference are joined by a bridge or stairs [m]"""
     stairs_below: PositiveFloat = 1.0
     """two initial tiles of a smaller height difference are joined by stairs, else not [m]"""
+    cliff_above: PositiveFloat = 0.4
+    """initial tiles side by side with a larger height difference are a dead end [m]"""
     level_below: PositiveFloat = 0.1
     """initial tiles in a row with smaller height differences are a flat link [m]"""
     obstacles: ObstaclesConfig = ObstaclesConfig()
     rubble: RubbleConfig = RubbleConfig()
     bridge: BridgeConfig = BridgeConfig()
     stairs: StairsConfig = StairsConfig()
+    detour: DetourConfig = DetourConfig()
 
     @model_validator(mode="after")
     def _odds_leave_room(self) -> "GeneratorConfig":

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.links import Cell, Link, Tile, find_links
+from jaxleas.terrain.links import Cell, Link, Tile, find_dead_ends, find_links
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.tiles import (
     TileFrame,
@@ -13,9 +13,11 @@ from jaxleas.terrain.tiles import (
     TilePolygons,
     bridge_tile,
     flat_tile,
+    hole_tile,
     obstacle_tile,
     rubble_tile,
     stairs_tile,
+    wall_tile,
 )
 
 DIRECTIONS: tuple[Cell, ...] = ((0, 1), (1, 0), (0, -1), (-1, 0))
@@ -29,11 +31,13 @@ class Arena:
         scene: its polygons; the corner of tile (0, 0) is the world's origin.
         tiles: kind and heights a cell, [row = y][column = x].
         links: tasks, each undirected link twice.
+        dead_ends: tasks that cannot be done, from every initial tile.
     """
 
     scene: Scene
     tiles: tuple[tuple[Tile, ...], ...]
     links: tuple[Link, ...]
+    dead_ends: tuple[Link, ...] = ()
 
 
 def generate_arena(config: GeneratorConfig, seed: int) -> Arena:
@@ -41,7 +45,12 @@ def generate_arena(config: GeneratorConfig, seed: int) -> Arena:
     builder = _Builder(config, np.random.default_rng(seed))
     builder.fill()
     tiles = tuple(tuple(row) for row in builder.tiles)
-    return Arena(Scene(builder.surfaces, builder.obstacles), tiles, find_links(tiles, config))
+    return Arena(
+        scene=Scene(builder.surfaces, builder.obstacles),
+        tiles=tiles,
+        links=find_links(tiles, config),
+        dead_ends=find_dead_ends(tiles, config),
+    )
 
 
 class _Builder:
@@ -89,6 +98,8 @@ class _Builder:
     def draw_transition(self, height: float) -> tuple[TileKind, float]:
         """Return a transition into the empty, and the height it leads to."""
         config, rng = self.config, self.rng
+        if config.detour_probability > 0.0 and rng.random() < config.detour_probability:
+            return (TileKind.HOLE if rng.random() < 0.5 else TileKind.WALL), height
         draw = rng.random()
         if draw < config.stairs_probability:
             return TileKind.STAIRS, height + rng.choice([-1, 1]) * rng.uniform(*config.stairs.climb)
@@ -127,6 +138,8 @@ class _Builder:
             TileKind.RUBBLE: rubble_tile,
             TileKind.BRIDGE: bridge_tile,
             TileKind.STAIRS: stairs_tile,
+            TileKind.HOLE: hole_tile,
+            TileKind.WALL: wall_tile,
         }[kind]
         polygons = make(self.frame(cell, direction), heights, self.config, self.rng)
         self.add(cell, polygons)

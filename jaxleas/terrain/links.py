@@ -8,7 +8,9 @@ import numpy as np
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.tiles import TileKind
 
-LinkKind = Literal["flat", "obstacles", "rubble", "bridge", "stairs_up", "stairs_down"]
+LinkKind = Literal[
+    "flat", "obstacles", "rubble", "bridge", "stairs_up", "stairs_down", "detour", "cliff", "void"
+]
 Area = tuple[float, float, float, float]
 """x_min, x_max, y_min, y_max [m]."""
 Cell = tuple[int, int]
@@ -47,7 +49,8 @@ class Link:
         kind: of the transition, or of the ground.
         difficulty: in its kind's own measure: flat 0; obstacles, the number of boxes on the
             way; rubble, the steepest rectangle over the steepest possible; bridge,
-            1 - width / tile size; stairs, the climb [m].
+            1 - width / tile size; stairs, the climb [m]; detour, the blocked width / tile size;
+            cliff, the height difference [m]; void 0.
         start_area: the start tile, inset [m].
         goal_area: the middle metre of the goal tile [m].
         start_height: of the start tile [m].
@@ -78,6 +81,27 @@ def find_links(tiles: tuple[tuple[Tile, ...], ...], config: GeneratorConfig) -> 
     return tuple(links)
 
 
+def find_dead_ends(
+    tiles: tuple[tuple[Tile, ...], ...], config: GeneratorConfig
+) -> tuple[Link, ...]:
+    """Return the tasks that cannot be done: the goal lies in the void, on a cliff or below one.
+
+    What is learned there is to stop (T sec. 3.2.1, behaviour C).
+    """
+    dead_ends = []
+    for row, column in np.ndindex(len(tiles), len(tiles[0])):
+        start = tiles[row][column]
+        for down, right in ((0, 1), (1, 0), (0, -1), (-1, 0)):
+            goal = _tile_at(tiles, (row + down, column + right))
+            climb = abs(goal.height - start.height)
+            cliff = goal.kind.is_initial and climb > config.cliff_above
+            if start.kind.is_initial and (cliff or goal.kind is TileKind.VOID):
+                cells = [(row, column), (row + down, column + right)]
+                kind, difficulty = ("cliff", climb) if cliff else ("void", 0.0)
+                dead_ends.append(_task(cells, [start, goal], kind, difficulty, config))
+    return tuple(dead_ends)
+
+
 def _tile_at(tiles: tuple[tuple[Tile, ...], ...], cell: Cell) -> Tile:
     inside = 0 <= cell[0] < len(tiles) and 0 <= cell[1] < len(tiles[0])
     return tiles[cell[0]][cell[1]] if inside else Tile()
@@ -97,6 +121,8 @@ def _is_crossable(path: list[Tile], step: Cell, config: GeneratorConfig) -> bool
     gaps = abs(entry.height - middle.height), abs(leave.height - middle.exit_height)
     limit = {
         TileKind.RUBBLE: config.level_below,
+        TileKind.HOLE: config.level_below,
+        TileKind.WALL: config.level_below,
         TileKind.BRIDGE: config.bridge_below,
         # the tallest climb the generator may draw is itself a link
         TileKind.STAIRS: max(config.stairs_below, config.stairs.climb[1]) + 1e-9,
@@ -105,7 +131,16 @@ def _is_crossable(path: list[Tile], step: Cell, config: GeneratorConfig) -> bool
 
 
 def _link(cells: list[Cell], path: list[Tile], config: GeneratorConfig) -> Link:
-    kind, difficulty = _kind_and_difficulty(path)
+    return _task(cells, path, *_kind_and_difficulty(path), config)
+
+
+def _task(
+    cells: list[Cell],
+    path: list[Tile],
+    kind: LinkKind,
+    difficulty: float,
+    config: GeneratorConfig,
+) -> Link:
     start, goal = cells[0], cells[-1]
     return Link(
         kind=kind,
@@ -125,7 +160,13 @@ def _kind_and_difficulty(path: list[Tile]) -> tuple[LinkKind, float]:
     difficulty = path[1].difficulty
     if path[1].kind is TileKind.STAIRS:
         return ("stairs_up" if path[-1].height > path[0].height else "stairs_down"), difficulty
-    return ("rubble" if path[1].kind is TileKind.RUBBLE else "bridge"), difficulty
+    kinds: dict[TileKind, LinkKind] = {
+        TileKind.RUBBLE: "rubble",
+        TileKind.BRIDGE: "bridge",
+        TileKind.HOLE: "detour",
+        TileKind.WALL: "detour",
+    }
+    return kinds[path[1].kind], difficulty
 
 
 def _square(cell: Cell, config: GeneratorConfig, half: float) -> Area:

@@ -77,12 +77,14 @@ def transition(kind: TransitionKind, seed: int) -> Scenario:
 def hole(seed: int) -> Scenario:
     """Return a floor with a hole between starts and goal (T fig. 3.15, I sec. IV-B.2).
 
-    The floor is 4 m along x and 4 m across, the hole in its middle 1 m along x and 1.5 m across,
-    shifted aside by up to 0.25 m: the rims are 1 to 1.5 m wide. Starts: 0.5 to 0.9 m before the
-    hole, over 2.4 m of the width; goal: 0.2 m around a point 1 m behind the hole.
+    The floor is 4 m along x and 4 m across, the hole in its middle 1 m along x and 1.1 m across,
+    shifted aside by up to 0.25 m: the rims are 1.2 to 1.7 m wide. (The sources give no size; from
+    the middle of a wider hole no rim lies within the 0.6 m that LEAS sees to a side, and a local
+    method has nothing to steer by.) Starts: 0.5 to 0.9 m before the hole, over 2.4 m of the width;
+    goal: 0.2 m around a point 1 m behind the hole.
     """
     shift = _rng("hole", seed).uniform(-0.25, 0.25)
-    rim = (shift - 0.75, shift + 0.75)
+    rim = (shift - 0.55, shift + 0.55)
     floors = [
         (0.0, 1.5, -2.0, 2.0),
         (2.5, 4.0, -2.0, 2.0),

@@ -19,13 +19,15 @@ Rectangle = tuple[float, float, float, float]
 
 
 class TileKind(StrEnum):
-    """What a cell of the grid holds; Flat and Obstacles are initial, the next three transitions."""
+    """What a cell of the grid holds; Flat and Obstacles are initial, the others transitions."""
 
     FLAT = "flat"
     OBSTACLES = "obstacles"
     RUBBLE = "rubble"
     BRIDGE = "bridge"
     STAIRS = "stairs"
+    HOLE = "hole"
+    WALL = "wall"
     VOID = "void"
 
     @property
@@ -157,6 +159,52 @@ def stairs_tile(
         z = heights[0] + climb * (step + 1) / (count + 1)
         surfaces.append(_rectangle(frame, (edges[step], edges[step + 1], -half, half), z))
     return TilePolygons(surfaces + _landings(frame, edges, heights), difficulty=abs(climb))
+
+
+def hole_tile(
+    frame: TileFrame,
+    heights: tuple[float, float],
+    config: GeneratorConfig,
+    rng: np.random.Generator,
+) -> TilePolygons:
+    """Return a level tile with a rectangular hole that leaves a rim at either side."""
+    half, rim = 0.5 * frame.size, config.detour.rim
+    width = min(rng.uniform(*config.detour.width), frame.size - 2.0 * rim)
+    low = rng.uniform(rim - half, half - rim - width)
+    high = low + width
+    length = min(rng.uniform(*config.detour.length), frame.size)
+    begin = rng.uniform(0.0, frame.size - length)
+    parts = [
+        (0.0, begin, -half, half),
+        (begin + length, frame.size, -half, half),
+        (begin, begin + length, -half, low),
+        (begin, begin + length, high, half),
+    ]
+    least = 3.0 * frame.inset + 1e-3
+    surfaces = [
+        _rectangle(frame, part, heights[0])
+        for part in parts
+        if part[1] - part[0] > least and part[3] - part[2] > least
+    ]
+    return TilePolygons(surfaces, difficulty=(high - low) / frame.size)
+
+
+def wall_tile(
+    frame: TileFrame,
+    heights: tuple[float, float],
+    config: GeneratorConfig,
+    rng: np.random.Generator,
+) -> TilePolygons:
+    """Return a level tile with a wall across it, from one side to a passage at the other."""
+    half, width = 0.5 * frame.size, rng.uniform(*config.detour.width)
+    low, high = (-half, width - half) if rng.random() < 0.5 else (half - width, half)
+    thickness = min(rng.uniform(*config.detour.thickness), frame.size)
+    # Close to one end: right before the robot that comes from there, far from one that comes back.
+    begin = rng.uniform(0.0, min(0.5, frame.size - thickness))
+    corners = frame.world(_corners((begin, begin + thickness, low, high), 0.0))
+    box = box_faces(corners, heights[0], heights[0] + rng.uniform(*config.detour.height))
+    surfaces = flat_tile(frame, heights[0]).surfaces
+    return TilePolygons(surfaces, [box], difficulty=(high - low) / frame.size)
 
 
 def split(

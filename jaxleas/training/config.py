@@ -28,6 +28,13 @@ class LinkShares(Strict):
     rubble: NonNegative = 0.10
     obstacles: NonNegative = 0.12
     flat: NonNegative = 0.03
+    detour: NonNegative = 0.0
+    """Holes and walls to be walked round (terrain.generator.detour_probability makes them)."""
+    cliff: NonNegative = 0.0
+    """A goal too high up or too far down: stop. With a share of 0.1 policies also stopped before
+    stairs; random goals teach enough of stopping."""
+    void: NonNegative = 0.0
+    """A goal where there is no ground: stop; likewise."""
 
 
 class TerrainConfig(Strict):
@@ -69,8 +76,8 @@ class PpoConfig(Strict):
     """At the start; it falls linearly (T sec. 3.4)."""
     final_learning_rate: NonNegative = 1e-5
     discount: Fraction = 0.99
-    """gamma: about 100 steps, 2 m, of foresight. The thesis's 0.97 sees 66 cm: too little for a step
-    aside to a bridge to pay before the horizon, and policies stood still in front of it."""
+    """gamma: about 100 steps, 2 m, of foresight. The thesis's 0.97 sees 66 cm: too little for a
+    step aside to a bridge to pay in time, and policies stood still in front of it."""
     gae_lambda: Fraction = 0.95
     clip: Positive = 0.2
     entropy: NonNegative = 0.003

@@ -6,6 +6,8 @@ from jaxleas.terrain.seeds import HELD_OUT_SEED, MAX_TRAINING_SEED
 from jaxleas.training.config import RunConfig
 from jaxleas.types import InputError
 
+NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
+
 
 def training_world(config: RunConfig) -> World:
     """Generate the arenas to train on.
@@ -35,7 +37,7 @@ def held_out_world(config: RunConfig) -> World:
     terrain = config.terrain
     clear = terrain.generator.obstacles.model_copy(update={"probability": 0.0})
     generator = terrain.generator.model_copy(update={"obstacles": clear})
-    crossings = terrain.shares.model_dump() | {"flat": 0.0, "obstacles": 0.0}
+    crossings = terrain.shares.model_dump() | dict.fromkeys(NOT_CROSSED, 0.0)
     seeds = range(HELD_OUT_SEED, HELD_OUT_SEED + config.held_out.arenas)
     arenas = [generate_arena(generator, seed) for seed in seeds]
     return make_world(arenas, terrain.resolution, crossings)

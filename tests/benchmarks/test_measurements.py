@@ -5,6 +5,7 @@ import json
 import pytest
 
 from benchmarks.comparison import by_name, compare
+from benchmarks.context import Context
 from benchmarks.measurements import (
     Figure,
     Measurement,
@@ -107,6 +108,8 @@ def test_choosing():
     assert {m.name for m in choose(["export_", "compile"], quick=False)} == {
         m.name for m in every if m.name.startswith("export_") or "compile" in m.name
     }
+    # A whole name is that metric alone, although it is part of another's.
+    assert [m.name for m in choose(["export_latency_1"], False)] == ["export_latency_1"]
     # What is slow is still measured if nothing else was asked for.
     assert choose(["learn_"], quick=True) == choose(["learn_"], quick=False)
     with pytest.raises(InputError, match="did you mean env_"):
@@ -125,7 +128,10 @@ def test_each_workload_is_measured_once_and_only_if_wanted():
 
     workloads = (workload("env_a", "env_b"), workload("ppo_c"))
     wanted = workloads[0].metrics
-    assert [m.name for m in measure(wanted, None, workloads=workloads)] == ["env_a", "env_b"]
+    assert [m.name for m in measure(wanted, Context(runs=1), workloads=workloads)] == [
+        "env_a",
+        "env_b",
+    ]
     assert calls == [("env_a", "env_b")]
 
 

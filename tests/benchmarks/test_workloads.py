@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import pytest
 
 from benchmarks.context import Context
+from benchmarks.measurements import Figure
 from benchmarks.timing import seconds_a_call
 from benchmarks.workloads import environment, export, learning, training
 from benchmarks.workloads.processes import ChildError, run
@@ -22,7 +23,9 @@ def context(monkeypatch) -> Context:
     context = Context(runs=2)
     context.config = tiny()
     rates = SimpleNamespace(matrix=1e12, memory=1e12, gather=1e12)
-    context.roofs = SimpleNamespace(rates=lambda *_, **__: rates, large_products=lambda: 1e12)
+    context.__dict__["roofs"] = SimpleNamespace(
+        rates=lambda *_, **__: rates, large_products=lambda: 1e12
+    )
     for module in (environment, export, training):
         quick = partial(seconds_a_call, least_seconds=0.01)
         monkeypatch.setattr(module, "seconds_a_call", quick)
@@ -35,14 +38,19 @@ def test_a_call_takes_what_it_takes():
     assert all(each >= 0.02 for each in seconds)
 
 
-@pytest.mark.parametrize("layout", ["thesis144", "icra81"])
-def test_the_environment(context, layout):
-    (figure,) = environment._measure(layout, 64, context).values()
-    assert len(figure.runs) == 2
-    assert 0.0 < max(figure.runs) < figure.limit
+def below_its_limit(figure: Figure) -> bool:
+    runs = [run for run in figure.runs if run is not None]
+    assert len(runs) == len(figure.runs) == 2
+    return figure.limit is not None and 0.0 < max(runs) < figure.limit
+
+
+def test_the_environment(context):
+    (figure,) = environment._measure("icra81", 64, context).values()
+    assert below_its_limit(figure)
     assert figure.rival is None
 
 
+@pytest.mark.slow
 def test_robots_that_fail_are_restarted(context):
     env = context.env
     walk = environment._make_walk(env, 50, 64, 64)
@@ -56,7 +64,8 @@ def test_robots_that_fail_are_restarted(context):
 @pytest.mark.parametrize("batch", [1, 1024])
 def test_latency(context, batch):
     (figure,) = export._measure(batch, context).values()
-    assert 0.0 < figure.limit < min(figure.runs)
+    assert figure.limit is not None
+    assert all(run is not None and run > figure.limit > 0.0 for run in figure.runs)
 
 
 @pytest.mark.slow
@@ -64,11 +73,11 @@ def test_training(context, brax_ranks):
     figures = training._as_shipped(context)
     assert set(figures) == {training.AS_SHIPPED, training.AGAINST_SIX}
     figure = figures[training.AS_SHIPPED]
-    assert 0.0 < max(figure.runs) < figure.limit
+    assert below_its_limit(figure)
 
 
 def test_processes_are_weighed_and_their_failures_told(tmp_path):
-    words = ["-c", "held = bytearray(b'x' * 200 * 2**20); print('done')"]
+    words = ["-c", "held = bytearray(b'x') * (200 * 2**20); print('done')"]
     finished = run(words, tmp_path / "cache", tmp_path / "log")
     assert finished.output == "done\n"
     assert 200.0 < finished.peak < 260.0, "its own memory, not that of this process"

@@ -9,6 +9,7 @@ from jaxleas.envs.steering import SteeringConfig, SteeringEnv, draw_starts, rest
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
+from jaxleas.training.config import LinkShares
 from jaxleas.types import InputError
 
 from .worlds import flat, height_map, world_of
@@ -95,30 +96,47 @@ def test_nobody_starts_over_the_void(env):
     assert np.all(np.abs(state.motion.position[:, 2]) < 2.0)
 
 
+KINDS = [*LinkShares.model_fields]
+
+
 def test_starts_are_shared_among_the_kinds_of_links_as_asked(env):
     arenas = [generate_arena(GeneratorConfig(rows=4, columns=4), seed) for seed in range(3)]
-    shares = {"bridge": 3.0, "stairs_up": 1.0, "stairs_down": 0.0}
-    shares |= {"rubble": 0.0, "obstacles": 0.0, "flat": 0.0}
+    shares = dict.fromkeys(KINDS, 0.0) | {"bridge": 2.0, "stairs_up": 1.0, "cliff": 1.0}
     world = make_world(arenas, 0.04, shares)
-    kinds = np.array([link.kind for arena in arenas for link in arena.links])
+    kinds = np.array([link.kind for arena in arenas for link in (*arena.links, *arena.dead_ends)])
     share = np.diff(np.asarray(world.cumulative_share), prepend=0.0)
-    for kind, expected in (("bridge", 0.75), ("stairs_up", 0.25), ("rubble", 0.0)):
+    for kind, expected in (("bridge", 0.5), ("stairs_up", 0.25), ("cliff", 0.25), ("void", 0.0)):
         assert share[kinds == kind].sum() == pytest.approx(expected, abs=1e-6)
     state, _ = take(draw_starts(env, world, jax.random.key(0), 512), jax.random.key(1), 300)
     starts = np.asarray(state.motion.position[:, :2])
     allowed = np.asarray(world.start_area)[share > 0]
-    inside = np.all(
-        (starts[:, None] >= allowed[:, 0::2]) & (starts[:, None] <= allowed[:, 1::2]), -1
-    )
+    low, high = allowed[:, 0::2], allowed[:, 1::2]
+    inside = np.all((starts[:, None] >= low) & (starts[:, None] <= high), axis=-1)
     assert np.all(inside.any(axis=1))
 
 
 def test_shares_that_no_link_can_serve_are_refused():
     arenas = [generate_arena(GeneratorConfig(rows=1, columns=2), 0)]
-    kinds = {link.kind for link in arenas[0].links}
-    shares = dict.fromkeys(
-        ("bridge", "stairs_up", "stairs_down", "rubble", "obstacles", "flat"), 0.0
-    )
-    assert kinds
     with pytest.raises(InputError, match=r"terrain\.shares"):
-        make_world(arenas, 0.04, shares)
+        make_world(arenas, 0.04, dict.fromkeys(KINDS, 0.0))
+
+
+def test_dead_ends_have_starts_though_nobody_can_arrive(env):
+    arenas = [generate_arena(GeneratorConfig(rows=3, columns=3), seed) for seed in range(3)]
+    world = make_world(arenas, 0.04, dict.fromkeys(KINDS, 0.0) | {"void": 1.0})
+    pool = draw_starts(env, world, jax.random.key(0), 256)
+    assert int(pool.valid_count) > 150
+
+
+def test_half_of_the_starts_are_near_and_a_fifth_wander(env):
+    arenas = [generate_arena(GeneratorConfig(rows=4, columns=4), seed) for seed in range(3)]
+    world = make_world(arenas, 0.04, dict.fromkeys(KINDS, 0.0) | {"bridge": 1.0})
+    pool = draw_starts(env, world, jax.random.key(0), 2048)
+    state, _ = take(pool, jax.random.key(1), 2000)
+    places = np.asarray(state.motion.position[:, None, :2])
+    near = np.asarray(world.near_area)
+    inside = np.all((places >= near[:, 0::2]) & (places <= near[:, 1::2]), axis=-1).any(axis=1)
+    # Half by choice, and 40 % of the others since the strip is 0.8 m of the tile's 2 m; a start
+    # tile with several bridges has several strips.
+    assert 0.65 < inside.mean() < 0.9
+    assert 0.15 < np.mean(np.asarray(state.goal_index) == 1) < 0.25

@@ -59,9 +59,8 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
     heights = env.local_heights(world.atlas, plan.map_index, motion)
     arrival = _arrival(env, world, motion, plan)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
-    valid = (env.condition(heights, motion) >= 0.0) & (
-        env.condition(arrival_heights, arrival) >= 0.0
-    )
+    arrives = env.condition(arrival_heights, arrival) >= 0.0
+    valid = (env.condition(heights, motion) >= 0.0) & (arrives | ~world.crossable[link])
     return StartPool(
         state=state,
         observation=env.observe(heights, motion, env.goal(state)),

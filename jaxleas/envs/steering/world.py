@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.generator import Arena
@@ -15,6 +15,7 @@ from jaxleas.terrain.links import Link
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types.errors import InputError
 
+DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
 NEAR = 0.8  # depth of the strip that counts as near to what is to be crossed [m]
 
 
@@ -29,6 +30,7 @@ class World:
         near_area: the strip of it next to what is to be crossed [m].
         goal_area: likewise where it ends [m].
         arena_area: likewise of each link's whole arena, for random goals [m].
+        crossable: whether the goal can be reached at all; before a dead end it cannot.
         cumulative_share: of the starts that fall on each link and those before it; ends at 1.
     """
 
@@ -38,6 +40,7 @@ class World:
     near_area: Float[Array, "links 4"]
     goal_area: Float[Array, "links 4"]
     arena_area: Float[Array, "links 4"]
+    crossable: Bool[Array, " links"]
     cumulative_share: Float[Array, " links"]
 
 
@@ -50,13 +53,17 @@ def make_world(
         arenas: each with at least one link among them.
         resolution: of the height maps [m].
         shares: relative share of starts by kind of link, split evenly among the links of a kind;
-            without it every link is as likely as any other.
+            without it every link is as likely as any other, and dead ends are left out.
 
     Raises:
         InputError: no arena has a link, or none of a kind with a share.
     """
     maps = [rasterise(arena.scene, resolution) for arena in arenas]
-    links = [(index, link) for index, arena in enumerate(arenas) for link in arena.links]
+    links = [
+        (index, link)
+        for index, arena in enumerate(arenas)
+        for link in (*arena.links, *(arena.dead_ends if shares else ()))
+    ]
     if not links:
         raise InputError(
             "the generated arenas hold no link to cross: give more rows or columns of tiles"
@@ -69,6 +76,7 @@ def make_world(
         near_area=_areas([_near(link) for _, link in links]),
         goal_area=_areas([link.goal_area for _, link in links]),
         arena_area=_areas([extents[index] for index, _ in links]),
+        crossable=jnp.asarray([link.kind not in DEAD_ENDS for _, link in links]),
         cumulative_share=_cumulative([link.kind for _, link in links], shares),
     )
 
