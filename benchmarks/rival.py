@@ -10,6 +10,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.files import read_json, write_npz
@@ -105,12 +107,11 @@ def write_task(path: str | Path, env: SteeringEnv, world: World) -> None:
         "origin": world.atlas.origin,
         "map_index": world.map_index,
         "start_area": world.start_area,
+        "near_area": world.near_area,
         "goal_area": world.goal_area,
         "arena_area": world.arena_area,
         "share": world.cumulative_share,
     }
-    import numpy as np
-
     plain = {name: np.asarray(value) for name, value in arrays.items()}
     write_npz(path, constants=np.array(json.dumps(constants)), **plain)
 

@@ -42,7 +42,9 @@ class Roofs:
         words = robots * (len(env.points_in_root) + env.layout.size)
         fastest = max(self.large_products(), self.network_products(config, env)) if matrix else 0.0
         return Rates(
-            matrix=fastest or float("inf"), memory=self.memory(words), gather=self.gather(env, robots)
+            matrix=fastest or float("inf"),
+            memory=self.memory(words),
+            gather=self.gather(env, robots),
         )
 
     def large_products(self) -> float:
@@ -91,7 +93,11 @@ def _network_products(samples: int, inputs: int, *hidden: int) -> float:
     operands = []
     for network in networks:
         for index, (rows, columns) in enumerate(network):
-            values = _normal(2, samples, rows), _normal(3, rows, columns), _normal(4, samples, columns)
+            values = (
+                _normal(2, samples, rows),
+                _normal(3, rows, columns),
+                _normal(4, samples, columns),
+            )
             operands.append((*values, index > 0))
     arrays = [each[:3] for each in operands]
     needed = [each[3] for each in operands]
@@ -156,4 +162,3 @@ def _height_indices(atlas: Atlas, env: SteeringEnv, robots: int) -> Array:
     row = np.clip(y + random.uniform(0, rows, (robots, 1)), 0, rows - 1).astype(np.int32)
     index = (random.integers(0, maps, (robots, 1)) * rows + row) * columns + column
     return jnp.asarray(np.minimum(index, maps * rows * columns - PASSES), dtype=jnp.int32)
-

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.rivals.robot_numpy import footprint, reach_intervals, trunk_bottoms
 from benchmarks.rivals.task import Task
 
 GOALS = 4
 NO_GROUND = -1.0e3
-UNDER_ROOT = 0.1 + 1e-6  # half side of the square under the root [m]
-EDGE = 1e-6  # points on the edge of a trunk box count as under it [m]
 CANDIDATES = 256  # starts drawn and checked at once
 HEIGHT_SPREAD = (-0.20, 0.07)
 
@@ -68,7 +67,7 @@ class SteeringBatch:
     def step(self, action: np.ndarray) -> Outcome:
         """Advance every robot by one time step; finished ones are not restarted."""
         constants = self.task.constants
-        command, acceleration_square, turn = self._command(action)
+        command, effort, turn = self._command(action)
         time_step = constants["time_step"]
         cosine, sine = np.cos(self.yaw), np.sin(self.yaw)
         self.position += self.velocity * time_step
@@ -83,7 +82,7 @@ class SteeringBatch:
         heights = self._heights(self.map, self.position, self.yaw)
         valid = self._valid(heights)
         toward, distance = self._toward_goal()
-        reward = self._reward(toward, acceleration_square, turn, valid)
+        reward = self._reward(toward, effort, turn, valid)
         self._next_goals(distance <= constants["goal_radius"])
         self.steps += 1
         truncated = valid & (self.steps >= constants["episode_steps"])
@@ -99,9 +98,10 @@ class SteeringBatch:
         for name, value in self._spare.items():
             getattr(self, name)[where] = value[:count]
         self._spare = {name: value[count:] for name, value in self._spare.items()}
-        self.goal_index[where] = self.goal_age[where] = self.steps[where] = 0
+        self.goal_age[where] = self.steps[where] = 0
 
     def _command(self, action: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the command [m/s^2, rad/s], and its squared effort and its turn as fractions."""
         constants = self.task.constants
         command = np.clip(action, -1.0, 1.0).astype(np.float32)
         length = np.sqrt(np.einsum("ni,ni->n", command[:, :3], command[:, :3]))
@@ -113,7 +113,11 @@ class SteeringBatch:
         return command, square, turn
 
     def _reward(
-        self, toward: np.ndarray, acceleration_square: np.ndarray, turn: np.ndarray, valid: np.ndarray
+        self,
+        toward: np.ndarray,
+        effort: np.ndarray,
+        turn: np.ndarray,
+        valid: np.ndarray,
     ) -> np.ndarray:
         constants = self.task.constants
         weights = constants["reward"]
@@ -125,7 +129,7 @@ class SteeringBatch:
             -weights["direction"] * error_square
             - weights["orientation"] * (1.0 - heading)
             - weights["turn"] * turn**2
-            - weights["acceleration"] * acceleration_square
+            - weights["acceleration"] * effort
             + np.where(valid, weights["alive"], -weights["failure"])
         )
 
@@ -183,7 +187,9 @@ class SteeringBatch:
         task, random = self.task, self.random
         link = np.minimum(np.searchsorted(task.share, random.random(count)), len(task.share) - 1)
         maps = task.map_index[link].astype(np.int32)
-        place = self._uniform(task.start_area[link])
+        near = random.random(count) < task.constants["near_share"]
+        area = np.where(near[:, None], task.near_area[link], task.start_area[link])
+        place = self._uniform(area)
         yaw = random.uniform(-np.pi, np.pi, count).astype(np.float32)
         speed = task.constants["desired_speed"] * np.maximum(random.uniform(-1, 1, count), 0.0)
         velocity = np.stack([speed * np.cos(yaw), speed * np.sin(yaw), 0 * speed], axis=-1)
@@ -203,6 +209,8 @@ class SteeringBatch:
         valid &= self._valid(self._heights(maps, arrival, towards))
         drawn: dict[str, Any] = {"position": position, "velocity": velocity, "yaw": yaw}
         drawn |= {"map": maps, "goals": goals, "goal_steps": steps}
+        wanders = random.random(count) < task.constants["wander_share"]
+        drawn["goal_index"] = wanders.astype(np.int32)
         return {name: value[valid] for name, value in drawn.items()}
 
     def _standing(self, maps: np.ndarray, place: np.ndarray) -> np.ndarray:
@@ -219,54 +227,3 @@ class SteeringBatch:
 def wrapped(angle: np.ndarray) -> np.ndarray:
     """Return an angle within [-pi, pi)."""
     return ((angle + np.pi) % (2 * np.pi) - np.pi).astype(np.float32)
-
-
-def footprint(trunk: list[dict[str, list[float]]]) -> np.ndarray:
-    """Return points over the lowest trunk box, its edges included, about 11 x 10 cm apart."""
-    box = min(trunk, key=lambda each: each["low"][2])
-    lines = []
-    for axis, spacing in enumerate((0.112, 0.101)):
-        length = box["high"][axis] - box["low"][axis]
-        count = int(np.ceil(length / spacing - 1e-6)) + 1
-        lines.append([box["low"][axis] + length * i / (count - 1) for i in range(count)])
-    return np.array([(x, y) for x in lines[0] for y in lines[1]])
-
-
-def reach_intervals(
-    limbs: list[dict[str, Any]], points: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return, for points under the root and each leg that has one, the span of z it can stand at."""
-    found = []
-    for index in np.flatnonzero(np.all(np.abs(points) <= UNDER_ROOT, axis=1)):
-        for limb in limbs:
-            low, high = -np.inf, np.inf
-            for normal, offset in zip(limb["normals"], limb["offsets"], strict=True):
-                left = offset - normal[0] * points[index, 0] - normal[1] * points[index, 1]
-                if abs(normal[2]) <= 1e-12:
-                    low = low if left >= 0.0 else np.inf
-                elif normal[2] > 0.0:
-                    high = min(high, left / normal[2])
-                else:
-                    low = max(low, left / normal[2])
-            if low <= high:
-                found.append((index, low, high))
-    indices, lows, highs = zip(*found, strict=True)
-    return np.array(indices), np.array(lows, np.float32), np.array(highs, np.float32)
-
-
-def trunk_bottoms(
-    trunk: list[dict[str, list[float]]], points: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which points lie under the trunk, and the height of its underside there."""
-    found = []
-    for index, (x, y) in enumerate(points):
-        over = [
-            box["low"][2]
-            for box in trunk
-            if box["low"][0] - EDGE <= x <= box["high"][0] + EDGE
-            and box["low"][1] - EDGE <= y <= box["high"][1] + EDGE
-        ]
-        if over:
-            found.append((index, min(over)))
-    indices, bottoms = zip(*found, strict=True)
-    return np.array(indices), np.array(bottoms, np.float32)

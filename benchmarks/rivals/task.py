@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-ARRAYS = ("heights", "origin", "map_index", "start_area", "goal_area", "arena_area", "share")
+AREAS = ("start_area", "near_area", "goal_area", "arena_area")
+ARRAYS = ("heights", "origin", "map_index", *AREAS, "share")
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,7 @@ class Task:
         origin: x, y of the centre of each map's first cell [m].
         map_index: of each link.
         start_area: x_min, x_max, y_min, y_max of each link's start area [m].
+        near_area: likewise of the strip of it next to what is to be crossed.
         goal_area: likewise of its goal area.
         arena_area: likewise of its arena.
         share: cumulative share of the starts.
@@ -29,6 +31,7 @@ class Task:
     origin: np.ndarray
     map_index: np.ndarray
     start_area: np.ndarray
+    near_area: np.ndarray
     goal_area: np.ndarray
     arena_area: np.ndarray
     share: np.ndarray

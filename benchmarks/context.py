@@ -1,0 +1,77 @@
+"""What all workloads of one run share: the configuration, the terrain, the roofs, the rival."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from benchmarks.arithmetic import env_limit, ppo_limit, step_work
+from benchmarks.rival import Rival
+from benchmarks.roofs import Roofs
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.world import World
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration import load_config
+from jaxleas.training.worlds import training_world
+
+ROOT = Path(__file__).resolve().parents[1]
+CONFIG = ROOT / "configs" / "leas_p1.yaml"
+
+
+@dataclass
+class Context:
+    """One run of the benchmarks.
+
+    Attributes:
+        runs: of each metric.
+        rivals: a Python that has the rival, or None.
+        config: the shipped one, unless a test gives a smaller.
+        config_path: its file, for measurements in processes of their own.
+    """
+
+    runs: int
+    rivals: str | None = None
+    config_path: Path = CONFIG
+
+    @cached_property
+    def config(self) -> RunConfig:
+        """The configuration that is measured."""
+        return load_config(RunConfig, self.config_path)
+
+    @cached_property
+    def env(self) -> SteeringEnv:
+        """The task as configured."""
+        return SteeringEnv(self.config.env)
+
+    @cached_property
+    def world(self) -> World:
+        """The terrain as configured."""
+        return training_world(self.config)
+
+    @cached_property
+    def roofs(self) -> Roofs:
+        """The machine's roofs over this terrain."""
+        return Roofs(self.world.atlas)
+
+    @cached_property
+    def rival(self) -> Rival:
+        """The rival on this task."""
+        return Rival(self.rivals, self.env, self.world, min(self.runs, 3))
+
+    def env_limit(self, env: SteeringEnv, robots: int) -> float:
+        """Return the bound of the environment alone [steps/s]."""
+        rates = self.roofs.rates(self.config, env, robots, matrix=False)
+        return env_limit(step_work(self.config, env), rates)
+
+    def ppo_limit(self, config: RunConfig, env: SteeringEnv) -> float:
+        """Return the bound of training end to end [steps/s]."""
+        rates = self.roofs.rates(config, env, config.ppo.environments, matrix=True)
+        return ppo_limit(step_work(config, env), rates)
+
+
+def changed(config: RunConfig, **sections: dict[str, Any]) -> RunConfig:
+    """Return a configuration with some fields of some sections changed, checked again."""
+    document = config.model_dump()
+    for section, fields in sections.items():
+        document[section] |= fields
+    return RunConfig.model_validate(document)

@@ -1,0 +1,48 @@
+"""Latency of the exported policy in onnxruntime, as a robot would call it."""
+
+from functools import partial
+
+import jax
+import numpy as np
+
+from benchmarks.arithmetic import forward_flops, layers
+from benchmarks.context import Context
+from benchmarks.measurements import Figure, Metric
+from benchmarks.timing import seconds_a_call
+from benchmarks.workloads.workload import Workload
+from jaxleas.envs.steering.layout import ACTION_SIZE
+from jaxleas.export import build_onnx
+from jaxleas.guide.onnx_metadata import describe
+from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
+from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.policy import policy_of
+
+BATCHES = (1, 1024)
+
+
+def _measure(batch: int, context: Context) -> dict[str, Figure]:
+    env, network = context.env, context.config.network
+    # Untrained: what the weights are does not change how long they take.
+    params = make_networks(network, env).policy_network.init(jax.random.key(0))
+    normaliser = initial_normaliser(network, env)
+    policy = policy_of(env, network.activation, normaliser, params)
+    exported = onnx_policy_from_bytes(build_onnx(policy, describe(env.config)), "the benchmark's")
+    random = np.random.default_rng(0)
+    observation = random.uniform(-1, 1, (batch, env.layout.size)).astype(np.float32)
+    seconds = seconds_a_call(lambda: exported(observation), context.runs)
+    flops = batch * forward_flops(layers(env.layout.size, network.hidden, ACTION_SIZE))
+    limit = 1e6 * flops / context.roofs.large_products()
+    return {
+        f"export_latency_{batch}": Figure(
+            [1e6 * each for each in seconds], limit, context.rival.figure(f"latency_{batch}")
+        )
+    }
+
+
+EXPORT = tuple(
+    Workload(
+        (Metric(f"export_latency_{batch}", "us", better="lower", tolerance=0.15),),
+        partial(_measure, batch),
+    )
+    for batch in BATCHES
+)

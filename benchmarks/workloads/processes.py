@@ -1,0 +1,76 @@
+"""Programs in fresh processes: their time from start, their memory."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.context import ROOT
+from jaxleas.types.errors import JaxleasError
+
+# A process inherits the peak of the one that forked it, so a small one stands in between.
+_WEIGH = """
+import resource, subprocess, sys
+code = subprocess.call([sys.executable, *sys.argv[2:]])
+with open(sys.argv[1], "w") as stream:
+    stream.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(code)
+"""
+
+
+class ChildError(JaxleasError):
+    """A measured program failed."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A program that ended well.
+
+    Attributes:
+        began: when it was started, as `time.time` has it [s].
+        peak: the most memory that it held [MiB].
+        output: what it wrote to standard output.
+    """
+
+    began: float
+    peak: float
+    output: str
+
+
+def start(words: Sequence[str], cache: Path, log: Path) -> subprocess.Popen:
+    """Start a Python program with a compile cache of its own; its output goes to `log`."""
+    with log.open("w", encoding="utf-8") as stream:
+        return subprocess.Popen(
+            [sys.executable, *words],
+            cwd=ROOT,
+            env=os.environ | {"JAX_COMPILATION_CACHE_DIR": str(cache)},
+            stdout=stream,
+            stderr=subprocess.STDOUT,
+        )
+
+
+def run(words: Sequence[str], cache: Path, log: Path) -> Finished:
+    """Run a Python program to its end.
+
+    Raises:
+        ChildError: it failed.
+    """
+    peak = log.with_name(f"{log.name}.peak")
+    began = time.time()
+    process = start(["-I", "-S", "-c", _WEIGH, str(peak), *words], cache, log)
+    process.wait()
+    output = log.read_text(encoding="utf-8", errors="replace")
+    require_success(process.returncode, words, output)
+    # Linux counts in kilobytes, macOS in bytes.
+    unit = 1024.0**2 if sys.platform == "darwin" else 1024.0
+    return Finished(began, int(peak.read_text(encoding="utf-8")) / unit, output)
+
+
+def require_success(code: int, words: Sequence[str], output: str) -> None:
+    """Raise ChildError with a program's last words unless it ended well."""
+    if code:
+        last = (output.strip().splitlines() or ["it said nothing"])[-1]
+        raise ChildError(f"`python {' '.join(words)}` failed: {last}")
