@@ -1,0 +1,1 @@
+"""Contact problems and their exact planners."""

@@ -1,0 +1,96 @@
+"""Is there a plan? Decided exactly: prune, mixed-integer program, placement, cuts, again."""
+
+import time
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.com import with_first_cuts
+from jaxleas.contacts.linear_program import Outcome, solve
+from jaxleas.contacts.mixed_integer import Formulation, assemble, chosen_surfaces
+from jaxleas.contacts.placement import Placement, Targets, place, put_com
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.pruning import prune
+from jaxleas.contacts.steps import Family, Step, make_steps
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """The answer.
+
+    Attributes:
+        outcome: "optimal" for a plan, "infeasible" for proof that there is none.
+        surfaces: of each phase.
+        placement: footholds and com.
+        dead_phase: where infeasible, a phase that certainly cannot be made, if pruning saw one.
+        programs: mixed-integer programs solved.
+    """
+
+    outcome: Outcome
+    surfaces: tuple[str, ...] = ()
+    placement: Placement | None = None
+    dead_phase: int | None = None
+    programs: int = 0
+
+
+def decide(
+    problem: ContactProblem,
+    deadline: float = np.inf,
+    formulation: Formulation = "hull",
+    targets: Targets | None = None,
+    quadratic: bool = False,
+    dropped: Collection[Family] = (),
+) -> Decision:
+    """Find a plan or prove that there is none.
+
+    Args:
+        problem: the contact problem.
+        deadline: of `time.perf_counter` [s].
+        formulation: of the mixed-integer program.
+        targets: for footholds: minimise the L1 distance to them; with `quadratic`, the squared
+            distance on the surfaces that the L1 distance chose.
+        quadratic: see there.
+        dropped: families of constraints that the last phase goes without.
+    """
+    steps = with_first_cuts(problem, make_steps(problem, dropped))
+    candidates = prune(problem, steps)
+    dead = next((index for index, names in enumerate(candidates) if not names), None)
+    if dead is not None:
+        return Decision("infeasible", dead_phase=dead)
+    failed: list[tuple[str, ...]] = []
+    programs = 0
+    while True:
+        surfaces, footholds, outcome = tuple(names[0] for names in candidates), None, "optimal"
+        if targets is not None or any(len(names) > 1 for names in candidates):
+            program, choices = assemble(problem, steps, candidates, formulation, targets, failed)
+            programs += 1
+            solution = solve(program, deadline - time.perf_counter())
+            outcome = solution.outcome
+            if outcome == "optimal":
+                surfaces = chosen_surfaces(solution.x, choices, candidates)
+                footholds = solution.x
+        elif failed:
+            outcome = "infeasible"
+        if outcome != "optimal":
+            return Decision(outcome, programs=programs)
+        placement = place(
+            problem,
+            steps,
+            surfaces,
+            deadline - time.perf_counter(),
+            targets if quadratic else None,
+        )
+        if placement.outcome == "optimal":
+            return Decision("optimal", surfaces, placement, programs=programs)
+        if placement.outcome != "infeasible":
+            return Decision(placement.outcome, programs=programs)
+        if cuts_of(placement.steps) == cuts_of(steps):
+            failed.append(surfaces)  # within the solver's tolerance only
+        steps = placement.steps
+
+
+def cuts_of(steps: list[Step]) -> int:
+    """Return the number of rows of all steps."""
+    return sum(len(step.b) for step in steps)

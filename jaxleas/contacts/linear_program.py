@@ -1,0 +1,152 @@
+"""Linear, mixed-integer and quadratic programs, and HiGHS to solve them."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import highspy
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy import sparse
+
+Outcome = Literal["optimal", "infeasible", "time_limit", "failed"]
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """min 1/2 x' Q x + cost . x, low <= x <= high, row_low <= A x <= row_high.
+
+    Attributes:
+        cost: linear.
+        low: bounds of the variables.
+        high: likewise.
+        A: sparse rows.
+        row_low: bounds of the rows.
+        row_high: likewise.
+        integer: which variables are integer.
+        Q: symmetric positive semi-definite, or None; not together with integers.
+    """
+
+    cost: Float[np.ndarray, " n"]
+    low: Float[np.ndarray, " n"]
+    high: Float[np.ndarray, " n"]
+    A: sparse.csr_array
+    row_low: Float[np.ndarray, " m"]
+    row_high: Float[np.ndarray, " m"]
+    integer: Bool[np.ndarray, " n"] | None = None
+    Q: sparse.csc_array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What HiGHS found.
+
+    Attributes:
+        outcome: "failed" stands for numerical trouble.
+        x: the variables; meaningful when optimal.
+        duals: of the rows.
+    """
+
+    outcome: Outcome
+    x: Float[np.ndarray, " n"]
+    duals: Float[np.ndarray, " m"] = field(default_factory=lambda: np.zeros(0))
+
+
+def solve(program: Program, time_limit: float = np.inf, tolerance: float = 1e-9) -> Solution:
+    """Solve a program on one thread.
+
+    Args:
+        program: what to solve.
+        time_limit: [s].
+        tolerance: on rows and bounds of linear programs.
+    """
+    if time_limit <= 0.0:
+        return Solution("time_limit", np.zeros(0))
+    highs = highspy.Highs()
+    highs.silent()
+    highs.setOptionValue("threads", 1)
+    highs.setOptionValue("time_limit", float(min(time_limit, 1e9)))
+    is_mip = program.integer is not None and bool(program.integer.any())
+    if not is_mip and program.Q is None:
+        highs.setOptionValue("primal_feasibility_tolerance", tolerance)
+        highs.setOptionValue("dual_feasibility_tolerance", max(tolerance, 1e-8))
+    highs.passModel(_to_highs(program))
+    highs.run()
+    outcome = _OUTCOMES.get(highs.getModelStatus(), "failed")
+    solution = highs.getSolution()
+    return Solution(outcome, np.array(solution.col_value), np.array(solution.row_dual))
+
+
+_OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
+    highspy.HighsModelStatus.kOptimal: "optimal",
+    highspy.HighsModelStatus.kInfeasible: "infeasible",
+    highspy.HighsModelStatus.kUnboundedOrInfeasible: "infeasible",
+    highspy.HighsModelStatus.kTimeLimit: "time_limit",
+}
+
+
+def _to_highs(program: Program) -> highspy.HighsModel:
+    model = highspy.HighsModel()
+    lp = model.lp_
+    lp.num_col_, lp.num_row_ = len(program.cost), len(program.row_low)
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = program.cost, program.low, program.high
+    lp.row_lower_, lp.row_upper_ = program.row_low, program.row_high
+    lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
+    lp.a_matrix_.start_ = program.A.indptr
+    lp.a_matrix_.index_ = program.A.indices
+    lp.a_matrix_.value_ = program.A.data
+    if program.integer is not None:
+        kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
+        lp.integrality_ = [kinds[int(each)] for each in program.integer]
+    if program.Q is not None:
+        lower = sparse.tril(program.Q, format="csc")
+        model.hessian_.dim_ = lower.shape[0]
+        model.hessian_.format_ = highspy.HessianFormat.kTriangular
+        model.hessian_.start_, model.hessian_.index_ = lower.indptr, lower.indices
+        model.hessian_.value_ = lower.data
+    return model
+
+
+@dataclass
+class Rows:
+    """Collects rows of a sparse matrix, dense block by dense block."""
+
+    columns: int
+    row: list[Int[np.ndarray, " e"]] = field(default_factory=list)
+    column: list[Int[np.ndarray, " e"]] = field(default_factory=list)
+    value: list[Float[np.ndarray, " e"]] = field(default_factory=list)
+    low: list[Float[np.ndarray, " r"]] = field(default_factory=list)
+    high: list[Float[np.ndarray, " r"]] = field(default_factory=list)
+    count: int = 0
+
+    def add(
+        self,
+        blocks: list[tuple[Int[np.ndarray, " c"], Float[np.ndarray, "r c"]]],
+        high: Float[np.ndarray, " r"],
+        low: Float[np.ndarray, " r"] | None = None,
+    ) -> None:
+        """Append rows low <= sum_i block_i x[columns_i] <= high; low is -infinity if not given."""
+        size = len(high)
+        here = np.arange(self.count, self.count + size)
+        for columns, block in blocks:
+            self.row.append(np.repeat(here, len(columns)))
+            self.column.append(np.tile(columns, size))
+            self.value.append(np.ascontiguousarray(block).reshape(-1))
+        self.high.append(high)
+        self.low.append(np.full(size, -np.inf) if low is None else low)
+        self.count += size
+
+    def matrix(self) -> sparse.csr_array:
+        """Return all rows."""
+        if not self.row:
+            return sparse.csr_array((0, self.columns))
+        entries = np.concatenate(self.value)
+        where = (np.concatenate(self.row), np.concatenate(self.column))
+        made = sparse.csr_array((entries, where), shape=(self.count, self.columns))
+        made.eliminate_zeros()
+        return made
+
+    def bounds(self) -> tuple[Float[np.ndarray, " m"], Float[np.ndarray, " m"]]:
+        """Return the lower and the upper bounds of all rows."""
+        if not self.low:
+            return np.zeros(0), np.zeros(0)
+        return np.concatenate(self.low), np.concatenate(self.high)
