@@ -32,7 +32,7 @@ def place_com(
     half_size: tuple[float, float],
     turns: tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3 3"]],
 ) -> tuple[Float[np.ndarray, "n 3"], list[tuple[Float[np.ndarray, " 3"], float]]]:
-    """Return places for the centre of mass, relative to the standing foot, or cuts if there are none.
+    """Return places for the centre of mass, relative to the standing foot, or cuts.
 
     Args:
         step: with its `com`.
@@ -107,15 +107,22 @@ def _place_or_cut(
     return solution.x[:3], (normal / length, float(bound) / length)
 
 
-def with_first_cuts(problem: ContactProblem, steps: list[Step]) -> list[Step]:
-    """Return the steps with those of a fixed set of cuts that cut something off their reach."""
+def with_first_cuts(problem: ContactProblem, steps: list[Step], count: int) -> list[Step]:
+    """Return the steps with those of a fixed set of cuts that cut something off their reach.
+
+    Args:
+        problem: the contact problem.
+        steps: of its phases.
+        count: how many get cuts, from the first on: all those whose constraints are complete.
+    """
     if problem.model != "two_com":
         return steps
     poses = foot_yaws(problem, steps)
-    return [
+    cut = [
         step.with_cuts(*_first_cuts(problem, step, *yaws))
-        for step, yaws in zip(steps, poses, strict=True)
+        for step, yaws in zip(steps[:count], poses, strict=False)
     ]
+    return [*cut, *steps[count:]]
 
 
 def foot_yaws(problem: ContactProblem, steps: list[Step]) -> list[tuple[float, float]]:

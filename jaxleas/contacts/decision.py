@@ -1,19 +1,22 @@
 """Is there a plan? Decided exactly: prune, mixed-integer program, placement, cuts, again."""
 
 import time
-from collections.abc import Collection
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
 from jaxleas.contacts.com import with_first_cuts
 from jaxleas.contacts.linear_program import Outcome, solve
 from jaxleas.contacts.mixed_integer import Formulation, assemble, chosen_surfaces
-from jaxleas.contacts.placement import Placement, Targets, place, put_com
+from jaxleas.contacts.placement import Placement, Targets, place
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.pruning import prune
 from jaxleas.contacts.steps import Family, Step, make_steps
+
+
+SEARCH_SHARE = 0.8
+"""Of the time left, for the search for surfaces at least cost; the rest is for the placement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +41,9 @@ class Decision:
 def decide(
     problem: ContactProblem,
     deadline: float = np.inf,
-    formulation: Formulation = "hull",
+    formulation: Formulation = "big_m",
     targets: Targets | None = None,
-    quadratic: bool = False,
-    dropped: Collection[Family] = (),
+    relaxed: Mapping[Family, float] | None = None,
 ) -> Decision:
     """Find a plan or prove that there is none.
 
@@ -49,12 +51,12 @@ def decide(
         problem: the contact problem.
         deadline: of `time.perf_counter` [s].
         formulation: of the mixed-integer program.
-        targets: for footholds: minimise the L1 distance to them; with `quadratic`, the squared
-            distance on the surfaces that the L1 distance chose.
-        quadratic: see there.
-        dropped: families of constraints that the last phase goes without.
+        targets: for footholds; a quadratic cost is minimised on the surfaces that the linear one
+            chose, since HiGHS takes no quadratic cost with integers (so does T 5.2.3).
+        relaxed: families of constraints that the last phase may violate by so much [m].
     """
-    steps = with_first_cuts(problem, make_steps(problem, dropped))
+    complete = len(problem) - (1 if relaxed else 0)
+    steps = with_first_cuts(problem, make_steps(problem, relaxed), complete)
     candidates = prune(problem, steps)
     dead = next((index for index, names in enumerate(candidates) if not names), None)
     if dead is not None:
@@ -62,26 +64,20 @@ def decide(
     failed: list[tuple[str, ...]] = []
     programs = 0
     while True:
-        surfaces, footholds, outcome = tuple(names[0] for names in candidates), None, "optimal"
+        surfaces, outcome = tuple(names[0] for names in candidates), "optimal"
         if targets is not None or any(len(names) > 1 for names in candidates):
             program, choices = assemble(problem, steps, candidates, formulation, targets, failed)
             programs += 1
-            solution = solve(program, deadline - time.perf_counter())
+            left = deadline - time.perf_counter()
+            solution = solve(program, left if targets is None else SEARCH_SHARE * left)
             outcome = solution.outcome
             if outcome == "optimal":
                 surfaces = chosen_surfaces(solution.x, choices, candidates)
-                footholds = solution.x
         elif failed:
             outcome = "infeasible"
         if outcome != "optimal":
             return Decision(outcome, programs=programs)
-        placement = place(
-            problem,
-            steps,
-            surfaces,
-            deadline - time.perf_counter(),
-            targets if quadratic else None,
-        )
+        placement = place(problem, steps, surfaces, deadline - time.perf_counter(), targets)
         if placement.outcome == "optimal":
             return Decision("optimal", surfaces, placement, programs=programs)
         if placement.outcome != "infeasible":

@@ -41,7 +41,7 @@ class Solution:
     """What HiGHS found.
 
     Attributes:
-        outcome: "failed" stands for numerical trouble.
+        outcome: "failed" stands for numerical trouble; "optimal" to within `GAP` with integers.
         x: the variables; meaningful when optimal.
         duals: of the rows.
     """
@@ -51,13 +51,18 @@ class Solution:
     duals: Float[np.ndarray, " m"] = field(default_factory=lambda: np.zeros(0))
 
 
-def solve(program: Program, time_limit: float = np.inf, tolerance: float = 1e-9) -> Solution:
+TOLERANCE = 1e-9
+"""On rows and bounds of linear programs [m]."""
+GAP = 0.01
+"""An integer solution whose cost is within this fraction of the best possible will do."""
+
+
+def solve(program: Program, time_limit: float = np.inf) -> Solution:
     """Solve a program on one thread.
 
     Args:
         program: what to solve.
-        time_limit: [s].
-        tolerance: on rows and bounds of linear programs.
+        time_limit: [s]; an integer solution found until then is returned, though not proved best.
     """
     if time_limit <= 0.0:
         return Solution("time_limit", np.zeros(0))
@@ -66,16 +71,24 @@ def solve(program: Program, time_limit: float = np.inf, tolerance: float = 1e-9)
     highs.setOptionValue("threads", 1)
     highs.setOptionValue("time_limit", float(min(time_limit, 1e9)))
     is_mip = program.integer is not None and bool(program.integer.any())
-    if not is_mip and program.Q is None:
-        highs.setOptionValue("primal_feasibility_tolerance", tolerance)
-        highs.setOptionValue("dual_feasibility_tolerance", max(tolerance, 1e-8))
+    if is_mip:  # the choices are easy to find: these two cost more than they bring
+        highs.setOptionValue("mip_heuristic_run_feasibility_jump", False)
+        highs.setOptionValue("mip_detect_symmetry", False)
+        highs.setOptionValue("mip_rel_gap", GAP)
+    elif program.Q is None:
+        highs.setOptionValue("presolve", "off")  # takes longer than these programs
+        highs.setOptionValue("primal_feasibility_tolerance", TOLERANCE)
+        highs.setOptionValue("dual_feasibility_tolerance", 1e-8)
     highs.passModel(_to_highs(program))
     highs.run()
     outcome = _OUTCOMES.get(highs.getModelStatus(), "failed")
     solution = highs.getSolution()
+    if is_mip and outcome == "time_limit" and highs.getInfo().primal_solution_status == _FEASIBLE:
+        outcome = "optimal"
     return Solution(outcome, np.array(solution.col_value), np.array(solution.row_dual))
 
 
+_FEASIBLE = int(highspy.SolutionStatus.kSolutionStatusFeasible)
 _OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
     highspy.HighsModelStatus.kInfeasible: "infeasible",

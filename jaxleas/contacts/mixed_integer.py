@@ -11,8 +11,9 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.steps import INITIAL, Step
 
 Formulation = Literal["hull", "big_m"]
-SPARE = 0.05
-"""Added to each big-M [m]: HiGHS ends with "solve error" where one is exactly tight."""
+LOOSER, SPARE = 1.5, 0.05
+"""A big-M is this many times the least possible, and so much more [m]: HiGHS may end with "solve
+error" where one is exactly tight."""
 Candidates = list[tuple[str, ...]]
 
 
@@ -55,7 +56,7 @@ def assemble(
         chosen = add(problem, names, rows, begin, low)
         low[chosen], high[chosen], integer[chosen] = 0.0, 1.0, True
         choices.append(chosen)
-        _add_step(problem, step, rows, begin, starts)
+        add_step(problem, step, rows, begin, starts)
     cost = np.zeros(total)
     if targets is not None:
         cost[int(starts[-1]) :] = 1.0
@@ -119,14 +120,14 @@ def _add_big_m(
         if len(names) == 1:
             rows.add([(position, A)], b)
             continue
-        big = np.maximum((A @ every.T).max(axis=1) - b, 0.0) + SPARE
+        big = LOOSER * np.maximum((A @ every.T).max(axis=1) - b, 0.0) + SPARE
         rows.add([(position, A), (chosen[number : number + 1], big[:, None])], b + big)
     if len(names) > 1:
         rows.add([(chosen, np.ones((1, len(names))))], one, one)
     return chosen
 
 
-def _add_step(
+def add_step(
     problem: ContactProblem, step: Step, rows: Rows, begin: int, starts: np.ndarray
 ) -> None:
     blocks, bound = [(begin + np.arange(3), step.A)], step.b

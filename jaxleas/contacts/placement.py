@@ -1,6 +1,7 @@
 """Footholds on chosen surfaces: a linear program, with the centre of mass put back by cuts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -15,6 +16,8 @@ MOST_MARGIN = 0.02
 """More distance to spare than this [m] is not asked for."""
 LEAST_MARGIN = -1e-7
 """Footholds that violate a constraint by more [m] are none (the certificate accepts 1e-6)."""
+KEPT_MARGIN = 1e-6
+"""Distance to spare that a cost must leave, where there is so much: the solver's tolerance [m]."""
 MAX_ROUNDS = 200
 
 
@@ -41,9 +44,11 @@ class Targets:
 
     Attributes:
         points: x, y of each phase [m].
+        cost: "linear": sum of |x - x'| + |y - y'|; "quadratic": sum of squared distances.
     """
 
     points: Float[np.ndarray, "n 2"]
+    cost: Literal["linear", "quadratic"] = "linear"
 
 
 def place(
@@ -60,7 +65,7 @@ def place(
         steps: of `make_steps`, with or without cuts.
         surfaces: one a phase.
         time_limit: [s].
-        targets: minimise the sum of squared distances to these, else maximise the least slack.
+        targets: minimise the distance to these, else maximise the least slack.
     """
     for _ in range(MAX_ROUNDS):
         outcome, footholds = _place_feet(problem, steps, surfaces, time_limit, targets)
@@ -141,11 +146,12 @@ def _place_feet(
         return "infeasible", None
     bases = np.stack([plane.basis for plane in planes])
     if targets is not None:
-        nearer = solve(_nearest(program, origin, bases, targets, margin), time_limit)
-        if nearer.outcome == "time_limit":
-            return "time_limit", None
-        solution = nearer if nearer.outcome == "optimal" else solution
-    local = solution.x[:-1].reshape(count, 1, 2)
+        nearest = _nearest_linear if targets.cost == "linear" else _nearest_quadratic
+        kept = _with_margin(program, min(margin, KEPT_MARGIN))
+        solution = solve(nearest(kept, origin, bases, targets), time_limit)
+        if solution.outcome != "optimal":
+            return solution.outcome, None
+    local = solution.x[: 2 * count].reshape(count, 1, 2)
     return "optimal", origin + (local @ bases)[:, 0, :]
 
 
@@ -163,23 +169,44 @@ def _most_slack(rows: Rows, count: int) -> Program:
     )
 
 
-def _nearest(
-    program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets, margin: float
+def _nearest_quadratic(
+    program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
 ) -> Program:
     """Minimise sum |p_xy - target|^2 = |origin_xy + B' w - target|^2 over the same rows."""
     flat = bases[:, :, :2]  # phase, coordinate in the plane, world x y
     hessian = 2.0 * np.einsum("kax,kbx->kab", flat, flat)
     linear = 2.0 * np.einsum("kax,kx->ka", flat, origin[:, :2] - targets.points)
-    keep = min(margin, 1e-6)  # so that the solver's tolerance does no harm
-    Q = sparse.block_diag([*hessian, np.zeros((1, 1))], format="csc")
-    low, high = program.low.copy(), program.high.copy()
-    low[-1] = high[-1] = keep
+    Q = sparse.csc_array(sparse.block_diag(list(hessian), format="csc"))
+    return replace(program, cost=linear.ravel(), Q=Q)
+
+
+def _nearest_linear(
+    program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
+) -> Program:
+    """Minimise sum u over the same rows and |p_xy - target| <= u."""
+    size = 2 * len(origin)
+    flat = sparse.block_diag([each[:, :2].T for each in bases])
+    apart = -sparse.identity(size)
+    away = (targets.points - origin[:, :2]).ravel()
+    before = sparse.hstack([program.A, sparse.csr_array((program.A.shape[0], size))])
+    distances = sparse.vstack([sparse.hstack([sign * flat, apart]) for sign in (1.0, -1.0)])
     return Program(
-        cost=np.append(linear.ravel(), 0.0),
-        low=low,
-        high=high,
-        A=program.A,
+        cost=np.append(np.zeros(size), np.ones(size)),
+        low=np.append(program.low, np.zeros(size)),
+        high=np.append(program.high, np.full(size, np.inf)),
+        A=sparse.csr_array(sparse.vstack([before, distances])),
+        row_low=np.append(program.row_low, np.full(2 * size, -np.inf)),
+        row_high=np.concatenate([program.row_high, away, -away]),
+    )
+
+
+def _with_margin(program: Program, margin: float) -> Program:
+    """Return the program with its least slack fixed instead of maximised, and without cost."""
+    return Program(
+        cost=program.cost[:-1],
+        low=program.low[:-1],
+        high=program.high[:-1],
+        A=sparse.csr_array(program.A[:, :-1]),
         row_low=program.row_low,
-        row_high=program.row_high,
-        Q=sparse.csc_array(Q),
+        row_high=program.row_high - margin,  # in metres: every row has slack 1
     )

@@ -1,6 +1,6 @@
 """What one step may be: the displacement from the standing foot, as half-spaces in the world."""
 
-from collections.abc import Collection
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -51,7 +51,7 @@ class Step:
         return replace(self, A=np.concatenate([self.A, A]), b=np.concatenate([self.b, b]))
 
 
-def make_steps(problem: ContactProblem, dropped: Collection[Family] = ()) -> list[Step]:
+def make_steps(problem: ContactProblem, relaxed: Mapping[Family, float] | None = None) -> list[Step]:
     """Return the step of each phase.
 
     Model "feet" (published SL1M code): A_{o_in_m} R_k^T (p_o - p_m) <= b; model "two_com" (T eq.
@@ -59,22 +59,21 @@ def make_steps(problem: ContactProblem, dropped: Collection[Family] = ()) -> lis
 
     Args:
         problem: the contact problem.
-        dropped: families of constraints that the *last* phase goes without.
+        relaxed: families of constraints that the *last* phase may violate by so much [m].
     """
     stances = {foot: (INITIAL, pose) for foot, pose in problem.initial.items()}
     steps = []
     for index, phase in enumerate(problem.phases):
         other = "RF" if phase.foot == "LF" else "LF"
         standing, pose = stances[other]
-        drop = dropped if index == len(problem) - 1 else ()
+        more = (relaxed or {}) if index == len(problem) - 1 else {}
         reach = _reach(problem, phase.foot, phase.yaw, other, pose.yaw)
-        if "step" in drop:
-            reach = HalfSpaces(reach.A[:0], reach.b[:0])
+        bound = reach.b + more.get("step", 0.0)
         com = ()
         if problem.model == "two_com":
             feet = ((other, rotation(pose.yaw)), (phase.foot, rotation(phase.yaw)))
-            com = tuple(_com(problem, feet, over, drop) for over in (0, 1))
-        steps.append(Step(phase.foot, standing, reach.A, reach.b, com))
+            com = tuple(_com(problem, feet, over, more) for over in (0, 1))
+        steps.append(Step(phase.foot, standing, reach.A, bound, com))
         stances[phase.foot] = (index, FootPose(np.zeros(3), phase.yaw))
     return steps
 
@@ -99,17 +98,16 @@ def _com(
     problem: ContactProblem,
     feet: tuple[tuple[str, np.ndarray], ...],
     over: int,
-    drop: Collection[Family],
+    more: Mapping[Family, float],
 ) -> tuple[HalfSpaces, HalfSpaces]:
     """Return where c may be from each foot; it lies over foot number `over`."""
-    half_x, half_y = problem.foot_half_size
     sole = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
-    sides = np.array([half_x, half_x, half_y, half_y])
+    sides = np.repeat(problem.foot_half_size, 2) + more.get("com_over", 0.0)
     sets = []
     for number, (name, turn) in enumerate(feet):
         reach = problem.polytopes.com[name]
-        keep_reach, keep_over = "com_reach" not in drop, number == over and "com_over" not in drop
-        A = np.concatenate([reach.normals[: None if keep_reach else 0], sole[: 4 * keep_over]])
-        b = np.concatenate([reach.offsets[: None if keep_reach else 0], sides[: 4 * keep_over]])
+        A, b = reach.normals, reach.offsets + more.get("com_reach", 0.0)
+        if number == over:
+            A, b = np.concatenate([A, sole]), np.concatenate([b, sides])
         sets.append(HalfSpaces(A @ turn.T, b))
     return sets[0], sets[1]
