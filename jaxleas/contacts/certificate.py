@@ -4,6 +4,7 @@ Shares no code with the planners: it reads the problem's value and does plain ar
 phase, exactly as the format states the constraints (docs/contacts.md).
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -68,7 +69,7 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
 
 def _on_surface(corners: np.ndarray, point: np.ndarray) -> list[tuple[float, str]]:
     normal = np.zeros(3)
-    for first, second in zip(corners[1:], corners[2:], strict=False):  # a fan of triangles
+    for first, second in itertools.pairwise(corners[1:]):  # a fan of triangles
         normal += np.cross(first - corners[0], second - corners[0])
     normal /= math.sqrt(float(normal @ normal))
     found = [(abs(float(normal @ (point - corners.mean(axis=0)))), "foot on the surface's plane")]

@@ -95,7 +95,7 @@ def _place_or_cut(
         row_high=b,
     )
     solution = solve(program)
-    if solution.outcome != "optimal":  # can only be numerical trouble: such a program has an optimum
+    if solution.outcome != "optimal":  # numerical trouble: there is an optimum
         raise ArithmeticError(f"the centre of mass's program ended as '{solution.outcome}'")
     if solution.x[3] <= FITS:
         return solution.x[:3], None

@@ -14,7 +14,6 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.pruning import prune
 from jaxleas.contacts.steps import Family, Step, make_steps
 
-
 SEARCH_SHARE = 0.8
 """Of the time left, for the search for surfaces at least cost; the rest is for the placement."""
 

@@ -51,7 +51,9 @@ class Step:
         return replace(self, A=np.concatenate([self.A, A]), b=np.concatenate([self.b, b]))
 
 
-def make_steps(problem: ContactProblem, relaxed: Mapping[Family, float] | None = None) -> list[Step]:
+def make_steps(
+    problem: ContactProblem, relaxed: Mapping[Family, float] | None = None
+) -> list[Step]:
     """Return the step of each phase.
 
     Model "feet" (published SL1M code): A_{o_in_m} R_k^T (p_o - p_m) <= b; model "two_com" (T eq.
