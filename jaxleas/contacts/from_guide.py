@@ -65,6 +65,7 @@ def problem_from_guide(
         name: make_surface(vertices, f"surface '{name}' of the scene")
         for name, vertices in scene.surfaces.items()
     }
+    initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)
     last = len(guide) - 1
     kept = [*range(every, last, every), last]
@@ -83,7 +84,7 @@ def problem_from_guide(
         robot=robot,
         model=model,
         surfaces=surfaces,
-        initial=_initial(guide, surfaces, described),
+        initial=initial,
         phases=tuple(phases),
         polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
         foot_half_size=described.foot_half_size,

@@ -130,6 +130,15 @@ def _add_big_m(
 def add_step(
     problem: ContactProblem, step: Step, rows: Rows, begin: int, starts: np.ndarray
 ) -> None:
+    """Add A (p_m - p_o) <= b.
+
+    Args:
+        problem: the contact problem.
+        step: of the phase.
+        rows: gets the rows.
+        begin: the column of p_m's first coordinate.
+        starts: the same for every phase.
+    """
     blocks, bound = [(begin + np.arange(3), step.A)], step.b
     if step.standing == INITIAL:
         other = "RF" if step.foot == "LF" else "LF"

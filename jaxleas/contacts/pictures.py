@@ -137,4 +137,4 @@ def _frame(ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[
     low, high = here.min(axis=0) - AROUND, here.max(axis=0) + AROUND
     ax.set_xlim(low[0], high[0])
     ax.set_ylim(low[1], high[1])
-    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_aspect("equal", adjustable="box")

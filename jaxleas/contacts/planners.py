@@ -188,9 +188,7 @@ def _reference_footholds(problem: ContactProblem, cost: Cost) -> Targets:
     points = []
     for index, phase in enumerate(problem.phases):
         if phase.root is None:
-            raise InputError(
-                f"phase {index} has no root: a cost needs a guide; ask for cost 'none'"
-            )
+            raise InputError(f"phase {index} has no root, which a cost needs: ask for cost 'none'")
         side = BESIDE_ROOT if phase.foot == "LF" else -BESIDE_ROOT
         left = np.array([-math.sin(phase.yaw), math.cos(phase.yaw)])
         points.append(phase.root[:2] + side * left)

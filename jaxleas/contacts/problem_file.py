@@ -183,9 +183,7 @@ def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
     if given is None:
         return load_robot(str(content["robot"])).foot_half_size
     if not isinstance(given, list) or len(given) != 2 or not all(_is_number(x) for x in given):
-        raise InputError(
-            f"{where}: foot_half_size must be two numbers in metres, not {given!r:.60}"
-        )
+        raise InputError(f"{where}: foot_half_size must be two numbers [m], not {given!r:.60}")
     if not all(0.0 < x < 1.0 for x in given):
         raise InputError(f"{where}: foot_half_size {given} is not between 0 and 1 m")
     return float(given[0]), float(given[1])
@@ -210,15 +208,10 @@ def _yaw(where: str, content: Any) -> float:
             " are about the vertical only"
         )
     if abs(content) > 2 * math.pi:
-        raise InputError(
-            f"{where}: yaw {content:g} is beyond a full turn; give radians, not degrees"
-        )
+        raise InputError(f"{where}: yaw {content:g} is beyond a full turn; give radians")
     return float(content)
 
 
 def _is_number(content: Any) -> bool:
-    return (
-        isinstance(content, int | float)
-        and not isinstance(content, bool)
-        and math.isfinite(content)
-    )
+    is_number = isinstance(content, int | float) and not isinstance(content, bool)
+    return is_number and math.isfinite(content)
