@@ -1,4 +1,4 @@
-"""Linear, mixed-integer and quadratic programs, and HiGHS to solve them."""
+"""Linear and mixed-integer programs, and HiGHS to solve them."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -13,7 +13,7 @@ Outcome = Literal["optimal", "infeasible", "time_limit", "failed"]
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """min 1/2 x' Q x + cost . x, low <= x <= high, row_low <= A x <= row_high.
+    """min cost . x, low <= x <= high, row_low <= A x <= row_high.
 
     Attributes:
         cost: linear.
@@ -23,7 +23,6 @@ class Program:
         row_low: bounds of the rows.
         row_high: likewise.
         integer: which variables are integer.
-        Q: symmetric positive semi-definite, or None; not together with integers.
     """
 
     cost: Float[np.ndarray, " n"]
@@ -33,7 +32,6 @@ class Program:
     row_low: Float[np.ndarray, " m"]
     row_high: Float[np.ndarray, " m"]
     integer: Bool[np.ndarray, " n"] | None = None
-    Q: sparse.csc_array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +73,7 @@ def solve(program: Program, time_limit: float = np.inf) -> Solution:
         highs.setOptionValue("mip_heuristic_run_feasibility_jump", False)
         highs.setOptionValue("mip_detect_symmetry", False)
         highs.setOptionValue("mip_rel_gap", GAP)
-    elif program.Q is None:
+    else:
         highs.setOptionValue("presolve", "off")  # takes longer than these programs
         highs.setOptionValue("primal_feasibility_tolerance", TOLERANCE)
         highs.setOptionValue("dual_feasibility_tolerance", 1e-8)
@@ -97,9 +95,8 @@ _OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
 }
 
 
-def _to_highs(program: Program) -> highspy.HighsModel:
-    model = highspy.HighsModel()
-    lp = model.lp_
+def _to_highs(program: Program) -> highspy.HighsLp:
+    lp = highspy.HighsLp()
     lp.num_col_, lp.num_row_ = len(program.cost), len(program.row_low)
     lp.col_cost_, lp.col_lower_, lp.col_upper_ = program.cost, program.low, program.high
     lp.row_lower_, lp.row_upper_ = program.row_low, program.row_high
@@ -110,13 +107,7 @@ def _to_highs(program: Program) -> highspy.HighsModel:
     if program.integer is not None:
         kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
         lp.integrality_ = [kinds[int(each)] for each in program.integer]
-    if program.Q is not None:
-        lower = sparse.tril(program.Q, format="csc")
-        model.hessian_.dim_ = lower.shape[0]
-        model.hessian_.format_ = highspy.HessianFormat.kTriangular
-        model.hessian_.start_, model.hessian_.index_ = lower.indptr, lower.indices
-        model.hessian_.value_ = lower.data
-    return model
+    return lp
 
 
 @dataclass

@@ -1,6 +1,6 @@
 """Footholds on chosen surfaces: a linear program, with the centre of mass put back by cuts."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -8,9 +8,11 @@ from jaxtyping import Float
 from scipy import sparse
 
 from jaxleas.contacts.com import foot_yaws, place_com
-from jaxleas.contacts.linear_program import Outcome, Program, Rows, solve
+from jaxleas.contacts.least_distance import least_distance
+from jaxleas.contacts.linear_program import Outcome, Program, Rows, Solution, solve
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.steps import INITIAL, Step, rotation
+from jaxleas.types.errors import InputError
 
 MOST_MARGIN = 0.02
 """More distance to spare than this [m] is not asked for."""
@@ -146,9 +148,11 @@ def _place_feet(
         return "infeasible", None
     bases = np.stack([plane.basis for plane in planes])
     if targets is not None:
-        nearest = _nearest_linear if targets.cost == "linear" else _nearest_quadratic
         kept = _with_margin(program, min(margin, KEPT_MARGIN))
-        solution = solve(nearest(kept, origin, bases, targets), time_limit)
+        if targets.cost == "linear":
+            solution = solve(_nearest_linear(kept, origin, bases, targets), time_limit)
+        else:
+            solution = _nearest_quadratic(kept, origin, bases, targets)
         if solution.outcome != "optimal":
             return solution.outcome, None
     local = solution.x[: 2 * count].reshape(count, 1, 2)
@@ -171,19 +175,27 @@ def _most_slack(rows: Rows, count: int) -> Program:
 
 def _nearest_quadratic(
     program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
-) -> Program:
-    """Minimise sum |p_xy - target|^2 = |origin_xy + B' w - target|^2 over the same rows."""
-    flat = bases[:, :, :2]  # phase, coordinate in the plane, world x y
-    hessian = 2.0 * np.einsum("kax,kbx->kab", flat, flat)
-    linear = 2.0 * np.einsum("kax,kx->ka", flat, origin[:, :2] - targets.points)
-    Q = sparse.csc_array(sparse.block_diag(list(hessian), format="csc"))
-    return replace(program, cost=linear.ravel(), Q=Q)
+) -> Solution:
+    """Minimise sum |u|^2, u = p_xy - target = origin_xy + B' w - target, over the same rows."""
+    flat = bases[:, :, :2].transpose(0, 2, 1)  # phase, world x y, coordinate in the plane
+    if (np.abs(np.linalg.det(flat)) < 1e-3).any():
+        raise InputError("a quadratic cost is horizontal: it needs surfaces that are no walls")
+    back = sparse.block_diag(list(np.linalg.inv(flat)), format="csr")
+    away = (targets.points - origin[:, :2]).ravel()
+    G = (program.A @ back).toarray()
+    length = np.linalg.norm(G, axis=1)
+    bounds = length > 1e-12  # a row without horizontal part is a constant
+    h = (program.row_high - G @ away)[bounds] / length[bounds]
+    nearest = least_distance(G[bounds] / length[bounds, None], h)
+    if nearest is None:
+        return Solution("failed", np.zeros(0))
+    return Solution("optimal", np.asarray(back @ (nearest + away)))
 
 
 def _nearest_linear(
     program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
 ) -> Program:
-    """Minimise sum u over the same rows and |p_xy - target| <= u."""
+    """Return the program that minimises sum u over the same rows and |p_xy - target| <= u."""
     size = 2 * len(origin)
     flat = sparse.block_diag([each[:, :2].T for each in bases])
     apart = -sparse.identity(size)

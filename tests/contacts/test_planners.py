@@ -242,7 +242,7 @@ def test_a_cost_draws_the_feet_to_the_guide(cost: str) -> None:
 
     free, drawn = plan_mip(asked), plan_mip(asked, cost=cost)
     assert certify(asked, drawn).certified
-    assert distance(drawn) < 0.7 * distance(free)
+    assert distance(drawn) < 0.8 * distance(free)
     rng = np.random.default_rng(0)
     for _ in range(200):  # no certified plan nearby is better
         other = drawn.but(footholds=drawn.footholds + rng.normal(0, 0.01, (4, 3)) * [1, 1, 0])
@@ -258,8 +258,8 @@ def test_a_cost_needs_a_guide() -> None:
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_a_time_limit_is_no_verdict(planner: str) -> None:
     begin = time.perf_counter()
-    for gap in (0.1, 0.3):
-        plan = PLANNERS[planner](problem(stones(gap)), time_limit=1e-6)
+    for described in (stones(0.1), stones(0.1, rise=0.1), random_world(1, "feet")):
+        plan = PLANNERS[planner](problem(described), time_limit=1e-6)
         assert plan.status == "time_limit"
         assert not plan.feasible
         assert "not decided within the time limit" in plan.reason

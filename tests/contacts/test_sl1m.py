@@ -7,7 +7,7 @@ from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.planners import plan_sl1m
 from jaxleas.contacts.sl1m import attempt
 from jaxleas.types.errors import InputError
-from tests.contacts.worlds import content, problem, random_world, rectangle
+from tests.contacts.worlds import content, problem, rectangle
 
 START = {"S1": rectangle(-0.3, 0.0, -0.2, 0.2)}
 
@@ -109,18 +109,23 @@ def test_the_relaxation_minimises_the_cost_map(described: dict) -> None:
 
 
 def test_the_cap_on_combinations_is_kept_and_said() -> None:
-    several = 0
-    for seed in range(20):
-        asked = problem(random_world(seed, "feet"))
-        needed = plan_sl1m(asked, diagnose=False)
-        if needed.feasible and needed.combinations > 1:
-            several += 1
-            plan = plan_sl1m(asked, max_combinations=needed.combinations - 1, diagnose=False)
-            assert plan.status == "not_found"
-            assert plan.combinations == needed.combinations - 1
-            assert f"the first {plan.combinations} combinations" in plan.reason
-            assert "proves nothing" in plan.reason
-    assert several >= 1
+    """As A.2, but S4 is out of reach from the two nearest surfaces: the third combination works."""
+    surfaces = {
+        **START,
+        "S2": rectangle(0.0, 0.1, -0.2, 0.1),
+        "S3": rectangle(0.2, 0.3, -0.2, 0.1),
+        "S4": rectangle(0.35, 0.6, 0.0, 0.2),
+        "S5": rectangle(0.0, 0.3, 0.28, 0.6),
+    }
+    asked = problem(content(surfaces, [["S2", "S3", "S5"], ["S4"]], model="feet"))
+    plan = plan_sl1m(asked, pruning=False)
+    assert (plan.status, plan.undecided, plan.combinations) == ("feasible", 1, 3)
+    assert plan.surfaces == ("S5", "S4")
+    for cap in (1, 2):
+        plan = plan_sl1m(asked, pruning=False, max_combinations=cap, diagnose=False)
+        assert (plan.status, plan.combinations) == ("not_found", cap)
+        assert f"the first {cap} combinations" in plan.reason
+        assert "proves nothing" in plan.reason
 
 
 def test_a_cap_must_be_positive() -> None:
