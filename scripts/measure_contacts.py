@@ -45,7 +45,7 @@ def long_scenario(seed: int) -> tuple[Scene, np.ndarray]:
         rise = float(list(scene.surfaces.values())[-1][0, 2])
         x, z = shift[0], shift[2]
         profile += [(x + 2.0, z), (x + 4.0, z + rise)]
-        shift = shift + [4.0, 0.0, rise]
+        shift = shift + np.array([4.0, 0.0, rise])
     along = 0.5 + STEP * np.arange(max(LENGTHS) + 1) * (20.5 / (STEP * max(LENGTHS)))
     height = np.interp(along, *np.array(profile).T)
     return Scene(surfaces), np.stack([along, 0.0 * along, height + ABOVE_GROUND], axis=1)
@@ -160,9 +160,11 @@ def measure_long(arguments: argparse.Namespace, row: Callable) -> None:
         print(plan.status, plan.reason)
         limit = {18: 60.0, 94: 1000.0}.get(steps)
         row(f"contacts/long/{steps}_steps_with_guide_{plan.status}", spent, "ms", "lower", runs=3,
-            rival=f"thesis, Gurobi: {ours} ms", ratio=round(spent / ours, 2), limit=limit)  # fmt: skip
+            rival=f"thesis, Gurobi: {ours} ms", ratio=round(spent / ours, 2),
+            limit=limit)  # fmt: skip
         free, most = asked.without_guide(), arguments.without_guide_limit
-        spent, plan = timed(lambda p=free: plan_mip(p, diagnose=False, time_limit=most), 1)
+        run = lambda p=free, s=most: plan_mip(p, diagnose=False, time_limit=s)  # noqa: E731
+        spent, plan = timed(run, 1)
         row(f"contacts/long/{steps}_steps_without_guide_{plan.status}", spent, "ms", "lower",
             rival=f"thesis, Gurobi: {theirs} ms", ratio=round(spent / theirs, 2))  # fmt: skip
 

@@ -12,10 +12,15 @@ from jaxleas.contacts.mixed_integer import Formulation, assemble, chosen_surface
 from jaxleas.contacts.placement import Placement, Targets, place
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.pruning import prune
+from jaxleas.contacts.sl1m import search
 from jaxleas.contacts.steps import Family, Step, make_steps
 
 SEARCH_SHARE = 0.8
 """Of the time left, for the search for surfaces at least cost; the rest is for the placement."""
+
+
+START_COMBINATIONS = 8
+"""Of SL1M, before the mixed-integer program: most feasible problems end there, much sooner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +48,7 @@ def decide(
     formulation: Formulation = "big_m",
     targets: Targets | None = None,
     relaxed: Mapping[Family, float] | None = None,
+    start: bool = True,
 ) -> Decision:
     """Find a plan or prove that there is none.
 
@@ -53,6 +59,7 @@ def decide(
         targets: for footholds; a quadratic cost is minimised on the surfaces that the linear one
             chose, since HiGHS takes no quadratic cost with integers (so does T 5.2.3).
         relaxed: families of constraints that the last phase may violate by so much [m].
+        start: try SL1M's first few combinations before any mixed-integer program (without cost).
     """
     complete = len(problem) - (1 if relaxed else 0)
     steps = with_first_cuts(problem, make_steps(problem, relaxed), complete)
@@ -60,6 +67,13 @@ def decide(
     dead = next((index for index, names in enumerate(candidates) if not names), None)
     if dead is not None:
         return Decision("infeasible", dead_phase=dead)
+    if targets is None and start:
+        found = search(problem, steps, candidates, deadline, START_COMBINATIONS)
+        if found.placement is not None:
+            return Decision("optimal", found.surfaces, found.placement)
+        if found.outcome in ("infeasible", "time_limit"):
+            return Decision("infeasible" if found.outcome == "infeasible" else "time_limit")
+        steps = found.steps
     failed: list[tuple[str, ...]] = []
     programs = 0
     while True:

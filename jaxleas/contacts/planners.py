@@ -35,6 +35,7 @@ def plan_mip(
     time_limit: float = math.inf,
     diagnose: bool = True,
     formulation: Formulation = "big_m",
+    start: bool = True,
 ) -> ContactPlan:
     """Plan by mixed-integer programming (T 5.2, app. B): exact, "infeasible" is a proof.
 
@@ -45,6 +46,7 @@ def plan_mip(
         time_limit: [s]; when it is over, the plan's status says "time_limit".
         diagnose: for an infeasible problem, find the last feasible phase and the reason.
         formulation: "big_m" (T 5.3, 5.4), or "hull", slower but without any big-M.
+        start: try SL1M's first combinations before the mixed-integer program: sooner, as exact.
 
     Raises:
         InputError: a cost is asked for, but the phases have no root.
@@ -54,7 +56,7 @@ def plan_mip(
     begin = time.perf_counter()
     deadline = begin + time_limit
     targets = None if cost == "none" else _reference_footholds(problem, cost)
-    decision = decide(problem, deadline, formulation, targets)
+    decision = decide(problem, deadline, formulation, targets, start=start)
     seconds = time.perf_counter() - begin
     if decision.placement is not None:
         return _certified("mip", problem, decision.surfaces, decision.placement, seconds)

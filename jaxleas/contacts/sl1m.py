@@ -15,7 +15,7 @@ from jaxleas.contacts.placement import Placement, place
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.pruning import prune
 from jaxleas.contacts.relaxation import Relaxed, relax
-from jaxleas.contacts.steps import make_steps
+from jaxleas.contacts.steps import Step, make_steps
 
 DECIDED = 1e-6
 """A foothold this near to a surface [m] has selected it (the LP is solved to 1e-9)."""
@@ -28,6 +28,7 @@ class Attempt:
 
     Attributes:
         outcome: "optimal" for a plan; "infeasible" if the relaxation already is; else "not_found".
+        steps: with the cuts found on the way.
         surfaces: of each phase.
         placement: footholds and com.
         undecided: phases that the relaxation left without a surface.
@@ -37,6 +38,7 @@ class Attempt:
     """
 
     outcome: Outcome | str
+    steps: list[Step]
     surfaces: tuple[str, ...] = ()
     placement: Placement | None = None
     undecided: int | None = None
@@ -64,24 +66,45 @@ def attempt(
     if pruning:
         candidates = prune(problem, steps)
         if not all(candidates):
-            return Attempt("infeasible")
+            return Attempt("infeasible", steps)
+    return search(problem, steps, candidates, deadline, max_combinations)
+
+
+def search(
+    problem: ContactProblem,
+    steps: list[Step],
+    candidates: Candidates,
+    deadline: float,
+    max_combinations: int,
+) -> Attempt:
+    """Relax, keep what is decided, enumerate the rest.
+
+    Args:
+        problem: the contact problem.
+        steps: of its phases, with cuts.
+        candidates: of each phase, at least one each.
+        deadline: of `time.perf_counter` [s].
+        max_combinations: after which it gives up.
+    """
     relaxed = relax(problem, steps, candidates, deadline - time.perf_counter())
     if relaxed.outcome != "optimal":
-        return Attempt(relaxed.outcome, relaxed=relaxed)
+        return Attempt(relaxed.outcome, steps=relaxed.steps, relaxed=relaxed)
     steps = relaxed.steps
     undecided = sum(float(slack.min()) > DECIDED for slack in relaxed.slack)
-    tried = 0
+    tried, outcome, exhausted = 0, "not_found", True
     for surfaces in _by_cost(candidates, relaxed.slack):
         if tried == max_combinations:
-            return Attempt("not_found", (), None, undecided, tried, relaxed=relaxed)
+            exhausted = False
+            break
         tried += 1
         placement = place(problem, steps, surfaces, deadline - time.perf_counter())
         steps = placement.steps
         if placement.outcome == "optimal":
-            return Attempt("optimal", surfaces, placement, undecided, tried, relaxed=relaxed)
+            return Attempt("optimal", steps, surfaces, placement, undecided, tried, False, relaxed)
         if placement.outcome == "time_limit":
-            return Attempt("time_limit", (), None, undecided, tried, relaxed=relaxed)
-    return Attempt("not_found", (), None, undecided, tried, True, relaxed)
+            outcome, exhausted = "time_limit", False
+            break
+    return Attempt(outcome, steps, (), None, undecided, tried, exhausted, relaxed)
 
 
 def _by_cost(

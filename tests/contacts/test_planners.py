@@ -96,9 +96,10 @@ def test_the_verdict_is_that_of_brute_force(model: str) -> None:
     for seed in range(14):
         described = random_world(seed, model)
         expected = twin(described)
-        for formulation in ("big_m", "hull"):
-            plan = plan_mip(problem(described), diagnose=False, formulation=formulation)
-            assert plan.feasible == expected, (seed, formulation)
+        for formulation, start in itertools.product(("big_m", "hull"), (False, True)):
+            options = {"formulation": formulation, "start": start}
+            plan = plan_mip(problem(described), diagnose=False, **options)
+            assert plan.feasible == expected, (seed, options)
         assert plan_sl1m(problem(described), diagnose=False).feasible <= expected
         verdicts.append(expected)
     assert 3 <= sum(verdicts) <= 11, "worlds must be of both kinds"
