@@ -114,18 +114,14 @@ def _com(
     return found
 
 
-def _turn_back(vector: np.ndarray, yaw: float) -> tuple[float, float, float]:
+def _turn_back(vector: np.ndarray, yaw: float) -> np.ndarray:
     cosine, sine = math.cos(yaw), math.sin(yaw)
-    x, y, z = (float(each) for each in vector)
-    return (cosine * x + sine * y, -sine * x + cosine * y, z)
+    x, y, z = vector
+    return np.array([cosine * x + sine * y, -sine * x + cosine * y, z])
 
 
-def _excess(A: np.ndarray, b: np.ndarray, point: tuple[float, float, float]) -> float:
-    rows = zip(A.tolist(), b.tolist(), strict=True)
-    return max(
-        (sum(a * x for a, x in zip(row, point, strict=True)) - bound) / math.hypot(*row)
-        for row, bound in rows
-    )
+def _excess(A: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
+    return float(((A @ point - b) / np.sqrt((A * A).sum(axis=1))).max())
 
 
 def _require_fitting(problem: ContactProblem, plan: ContactPlan) -> Float[np.ndarray, "n 3"]:

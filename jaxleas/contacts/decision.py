@@ -90,7 +90,7 @@ def decide(
             outcome = "infeasible"
         if outcome != "optimal":
             return Decision(outcome, programs=programs)
-        placement = place(problem, steps, surfaces, deadline - time.perf_counter(), targets)
+        placement = place(problem, steps, surfaces, deadline, targets)
         if placement.outcome == "optimal":
             return Decision("optimal", surfaces, placement, programs=programs)
         if placement.outcome != "infeasible":

@@ -1,5 +1,6 @@
 """Footholds on chosen surfaces: a linear program, with the centre of mass put back by cuts."""
 
+import time
 from dataclasses import dataclass
 from typing import Literal
 
@@ -57,7 +58,7 @@ def place(
     problem: ContactProblem,
     steps: list[Step],
     surfaces: tuple[str, ...],
-    time_limit: float = np.inf,
+    deadline: float = np.inf,
     targets: Targets | None = None,
 ) -> Placement:
     """Place each foot on its surface, with the most distance to spare or nearest to targets.
@@ -66,11 +67,11 @@ def place(
         problem: the contact problem.
         steps: of `make_steps`, with or without cuts.
         surfaces: one a phase.
-        time_limit: [s].
+        deadline: of `time.perf_counter` [s].
         targets: minimise the distance to these, else maximise the least slack.
     """
     for _ in range(MAX_ROUNDS):
-        outcome, footholds = _place_feet(problem, steps, surfaces, time_limit, targets)
+        outcome, footholds = _place_feet(problem, steps, surfaces, deadline, targets)
         if footholds is None:
             return Placement(outcome, steps)
         com, steps, found = put_com(problem, steps, footholds)
@@ -116,7 +117,7 @@ def _place_feet(
     problem: ContactProblem,
     steps: list[Step],
     surfaces: tuple[str, ...],
-    time_limit: float,
+    deadline: float,
     targets: Targets | None,
 ) -> tuple[Outcome, Float[np.ndarray, "n 3"] | None]:
     """Solve for two coordinates in the plane of each surface, and the least slack."""
@@ -140,7 +141,7 @@ def _place_feet(
             bound = bound + step.A @ origin[step.standing]
         rows.add(blocks, bound)
     program = _most_slack(rows, count)
-    solution = solve(program, time_limit)
+    solution = solve(program, deadline - time.perf_counter())
     if solution.outcome != "optimal":
         return solution.outcome, None
     margin = float(solution.x[-1])
@@ -150,7 +151,9 @@ def _place_feet(
     if targets is not None:
         kept = _with_margin(program, min(margin, KEPT_MARGIN))
         if targets.cost == "linear":
-            solution = solve(_nearest_linear(kept, origin, bases, targets), time_limit)
+            solution = solve(
+                _nearest_linear(kept, origin, bases, targets), deadline - time.perf_counter()
+            )
         else:
             solution = _nearest_quadratic(kept, origin, bases, targets)
         if solution.outcome != "optimal":

@@ -1,5 +1,6 @@
 """SL1M's relaxation (T eq. 5.9, 5.10): how far each foothold is from each candidate, in metres."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.linear_program import Outcome, Program, Rows, solve
 from jaxleas.contacts.mixed_integer import Candidates, add_step
-from jaxleas.contacts.placement import MAX_ROUNDS, put_com
+from jaxleas.contacts.placement import put_com
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.steps import Step
 
@@ -30,33 +31,32 @@ class Relaxed:
 
 
 def relax(
-    problem: ContactProblem, steps: list[Step], candidates: Candidates, time_limit: float = np.inf
+    problem: ContactProblem, steps: list[Step], candidates: Candidates, deadline: float = np.inf
 ) -> Relaxed:
     """Minimise the sum of all slacks over footholds that the steps allow.
 
     min sum_kj a_kj  s.t.  S_j p_k <= s_j + a_kj,  |d_j . p_k - e_j| <= a_kj,  a >= 0, and steps.
-    Rows have unit normals and there is no big-M, so that a slack is a distance in metres.
+    Rows have unit normals and there is no big-M, so that a slack is a distance in metres. Where
+    the footholds leave no place for the centre of mass, cuts are returned, but the program is not
+    solved again: `place` keeps every constraint, and a second solution decided no more.
 
     Args:
         problem: the contact problem.
         steps: of its phases, with cuts.
         candidates: of each phase; a single one is a hard constraint.
-        time_limit: [s].
+        deadline: of `time.perf_counter` [s].
     """
-    for _ in range(MAX_ROUNDS):
-        program, starts = _assemble(problem, steps, candidates)
-        solution = solve(program, time_limit)
-        if solution.outcome != "optimal":
-            return Relaxed(solution.outcome, steps)
-        footholds = solution.x[starts[:-1, None] + np.arange(3)]
-        _, steps, found = put_com(problem, steps, footholds)
-        if not found:
-            slack = tuple(
-                np.array([problem.surfaces[name].distance(point) for name in names])
-                for names, point in zip(candidates, footholds, strict=True)
-            )
-            return Relaxed("optimal", steps, footholds, slack)
-    return Relaxed("failed", steps)
+    program, starts = _assemble(problem, steps, candidates)
+    solution = solve(program, deadline - time.perf_counter())
+    if solution.outcome != "optimal":
+        return Relaxed(solution.outcome, steps)
+    footholds = solution.x[starts[:-1, None] + np.arange(3)]
+    _, steps, _ = put_com(problem, steps, footholds)
+    slack = tuple(
+        np.array([problem.surfaces[name].distance(point) for name in names])
+        for names, point in zip(candidates, footholds, strict=True)
+    )
+    return Relaxed("optimal", steps, footholds, slack)
 
 
 def _assemble(

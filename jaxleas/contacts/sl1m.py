@@ -1,7 +1,6 @@
 """SL1M (T 5.3): relax, keep what the L1 norm decided, enumerate the rest by cost."""
 
 import heapq
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -86,7 +85,7 @@ def search(
         deadline: of `time.perf_counter` [s].
         max_combinations: after which it gives up.
     """
-    relaxed = relax(problem, steps, candidates, deadline - time.perf_counter())
+    relaxed = relax(problem, steps, candidates, deadline)
     if relaxed.outcome != "optimal":
         return Attempt(relaxed.outcome, steps=relaxed.steps, relaxed=relaxed)
     steps = relaxed.steps
@@ -97,7 +96,7 @@ def search(
             exhausted = False
             break
         tried += 1
-        placement = place(problem, steps, surfaces, deadline - time.perf_counter())
+        placement = place(problem, steps, surfaces, deadline)
         steps = placement.steps
         if placement.outcome == "optimal":
             return Attempt("optimal", steps, surfaces, placement, undecided, tried, False, relaxed)
