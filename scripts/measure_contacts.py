@@ -14,6 +14,7 @@ import platform
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def long_problem(scene: Scene, roots: np.ndarray, steps: int) -> ContactProblem:
     return problem_from_guide(guide, scene, every=1)
 
 
-def timed(run: Callable[[], object], repeats: int = 3) -> tuple[float, object]:
+def timed(run: Callable[[], Any], repeats: int = 3) -> tuple[float, Any]:
     """Return the least time [ms] of some runs, and what the last returned."""
     times, answer = [], None
     for _ in range(repeats):

@@ -66,9 +66,9 @@ def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
         prefix: a problem of which all but the last phase can be made.
         deadline: of `time.perf_counter` [s].
     """
-    families: list[Family] = ["step"]
+    families: tuple[Family, ...] = ("step",)
     if prefix.model == "two_com":
-        families += ["com_reach", "com_over"]
+        families = ("step", "com_reach", "com_over")
     short = {}
     for family in families:
         short[family] = _least(lambda m, f=family: decide(prefix, deadline, relaxed={f: m}).outcome)

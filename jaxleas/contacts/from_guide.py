@@ -115,7 +115,7 @@ class _Finder:
             half = 0.5 * window
             square = Polytope.from_box(Box((-half, -half, low), (half, half, high)))
             reach = [square, square]
-        self.reach = dict(zip(FEET, reach, strict=True))
+        self.reach: dict[str, Polytope] = dict(zip(FEET, reach, strict=True))
 
     def find(self, root: np.ndarray, yaw: float, foot: str) -> tuple[str, ...]:
         near = np.linalg.norm(self.packed[:, :, :2].mean(axis=1) - root[:2], axis=1)

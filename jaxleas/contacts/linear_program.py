@@ -100,10 +100,11 @@ def _to_highs(program: Program) -> highspy.HighsLp:
     lp.num_col_, lp.num_row_ = len(program.cost), len(program.row_low)
     lp.col_cost_, lp.col_lower_, lp.col_upper_ = program.cost, program.low, program.high
     lp.row_lower_, lp.row_upper_ = program.row_low, program.row_high
-    lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
-    lp.a_matrix_.start_ = program.A.indptr
-    lp.a_matrix_.index_ = program.A.indices
-    lp.a_matrix_.value_ = program.A.data
+    matrix = lp.a_matrix_
+    matrix.format_ = highspy.MatrixFormat.kRowwise
+    matrix.start_ = program.A.indptr  # pyright: ignore[reportAttributeAccessIssue]
+    matrix.index_ = program.A.indices  # pyright: ignore[reportAttributeAccessIssue]
+    matrix.value_ = program.A.data  # pyright: ignore[reportAttributeAccessIssue]
     if program.integer is not None:
         kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
         lp.integrality_ = [kinds[int(each)] for each in program.integer]

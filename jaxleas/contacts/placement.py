@@ -185,7 +185,7 @@ def _nearest_quadratic(
         raise InputError("a quadratic cost is horizontal: it needs surfaces that are no walls")
     back = sparse.block_diag(list(np.linalg.inv(flat)), format="csr")
     away = (targets.points - origin[:, :2]).ravel()
-    G = (program.A @ back).toarray()
+    G = sparse.csr_array(program.A @ back).toarray()
     length = np.linalg.norm(G, axis=1)
     bounds = length > 1e-12  # a row without horizontal part is a constant
     h = (program.row_high - G @ away)[bounds] / length[bounds]
@@ -203,7 +203,7 @@ def _nearest_linear(
     flat = sparse.block_diag([each[:, :2].T for each in bases])
     apart = -sparse.identity(size)
     away = (targets.points - origin[:, :2]).ravel()
-    before = sparse.hstack([program.A, sparse.csr_array((program.A.shape[0], size))])
+    before = sparse.hstack([program.A, sparse.csr_array((len(program.row_high), size))])
     distances = sparse.vstack([sparse.hstack([sign * flat, apart]) for sign in (1.0, -1.0)])
     return Program(
         cost=np.append(np.zeros(size), np.ones(size)),

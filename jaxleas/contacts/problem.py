@@ -10,7 +10,7 @@ from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.surfaces import ContactSurface
 
 Model = Literal["two_com", "feet"]
-FEET = ("LF", "RF")
+FEET: tuple[str, str] = ("LF", "RF")
 """Left before right."""
 
 

@@ -18,10 +18,10 @@ def prune(problem: ContactProblem, steps: list[Step]) -> list[tuple[str, ...]]:
     empty tuple for phase k proves that phase k cannot be made.
     """
     pairs = [_possible_pairs(problem, steps, index) for index in range(len(steps))]
-    alive = [np.ones(len(phase.candidates), bool) for phase in problem.phases]
+    alive: list[np.ndarray] = [np.ones(len(phase.candidates), bool) for phase in problem.phases]
     for index, step in enumerate(steps):
         before = np.ones(1, bool) if step.standing == INITIAL else alive[step.standing]
-        alive[index] = pairs[index][before].any(axis=0)
+        alive[index] = np.any(pairs[index][before], axis=0)
         if not alive[index].any():
             break
     else:
@@ -47,7 +47,7 @@ def _possible_pairs(
     else:
         _, high_before = _ranges(problem, problem.phases[step.standing].candidates, step)
     least = low_now[None, :, :] - high_before[:, None, :]  # of each row over the pair
-    return (least <= step.b + SAFETY).all(axis=-1)
+    return np.all(least <= step.b + SAFETY, axis=-1)
 
 
 def _ranges(

@@ -116,8 +116,10 @@ def _by_cost(
         decided = distances[order[0]] <= DECIDED
         options.append([(float(distances[i]), names[i]) for i in order[: 1 if decided else None]])
     free = [index for index, each in enumerate(options) if len(each) > 1]
-    start = (0,) * len(free)
-    heap = [(sum(options[index][0][0] for index in free), start)]
+    start: tuple[int, ...] = tuple(0 for _ in free)
+    heap: list[tuple[float, tuple[int, ...]]] = [
+        (sum(options[index][0][0] for index in free), start)
+    ]
     seen = {start}
     while heap:
         cost, ranks = heapq.heappop(heap)
