@@ -31,6 +31,9 @@ COMMANDS = {
         "export",
         "write a policy as ONNX and StableHLO, checked",
     ),
+    "plan": ("jaxleas.contacts.commands", "plan", "plan the contacts of a problem file"),
+    "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
+    "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 

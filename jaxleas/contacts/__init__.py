@@ -1,0 +1,35 @@
+"""Contact problems and their exact planners: mixed-integer, SL1M; certificates; pictures."""
+
+from jaxleas.contacts.certificate import Violation, certify
+from jaxleas.contacts.from_guide import problem_from_guide
+from jaxleas.contacts.guide_file import read_guide_path
+from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
+from jaxleas.contacts.planners import PLANNERS, PlannerError, plan_mip, plan_sl1m
+from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
+from jaxleas.contacts.prefix import last_feasible_phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem_file import read_problem, write_problem
+from jaxleas.contacts.surfaces import ContactSurface
+
+__all__ = [
+    "PLANNERS",
+    "ContactPlan",
+    "ContactProblem",
+    "ContactSurface",
+    "FootPose",
+    "Phase",
+    "PlannerError",
+    "StepPolytopes",
+    "Violation",
+    "certify",
+    "last_feasible_phase",
+    "load_step_polytopes",
+    "plan_mip",
+    "plan_sl1m",
+    "problem_from_guide",
+    "read_guide_path",
+    "read_plan",
+    "read_problem",
+    "write_plan",
+    "write_problem",
+]

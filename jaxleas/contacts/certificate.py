@@ -1,0 +1,147 @@
+"""The certificate: every constraint of a problem, recomputed for a plan in metres.
+
+Shares no code with the planners: it reads the problem's value and does plain arithmetic, phase by
+phase, exactly as the format states the constraints (docs/contacts.md).
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.plan import ContactPlan
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.types.errors import InputError
+
+TOLERANCE = 1e-6
+"""A plan that violates a constraint by more than this [m] is no plan."""
+
+
+@dataclass(frozen=True)
+class Violation:
+    """The worst constraint of a plan.
+
+    Attributes:
+        metres: by how much it is violated [m].
+        phase: in which.
+        constraint: a few words.
+    """
+
+    metres: float
+    phase: int
+    constraint: str
+
+    @property
+    def certified(self) -> bool:
+        """Whether the plan satisfies every constraint."""
+        return self.metres <= TOLERANCE
+
+
+def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
+    """Return the constraint that `plan` violates most.
+
+    Raises:
+        InputError: the plan is none for this problem (number of phases, surfaces, com).
+    """
+    footholds = _require_fitting(problem, plan)
+    stances = {name: (pose.position, pose.yaw) for name, pose in problem.initial.items()}
+    worst = Violation(-math.inf, 0, "")
+    for index, (phase, point) in enumerate(zip(problem.phases, footholds, strict=True)):
+        other = "RF" if phase.foot == "LF" else "LF"
+        standing, standing_yaw = stances[other]
+        found = [
+            *_on_surface(problem.surfaces[plan.surfaces[index]].vertices, point),
+            *_step(problem, phase.foot, other, point, standing, phase.yaw, standing_yaw),
+        ]
+        if problem.model == "two_com":
+            assert plan.com is not None
+            feet = ((other, standing, standing_yaw), (phase.foot, point, phase.yaw))
+            for number in (0, 1):
+                found += _com(problem, plan.com[index, number], number, feet)
+        stances[phase.foot] = (point, phase.yaw)
+        metres, constraint = max(found)
+        if metres > worst.metres:
+            worst = Violation(float(metres), index, constraint)
+    return worst
+
+
+def _on_surface(corners: np.ndarray, point: np.ndarray) -> list[tuple[float, str]]:
+    normal = np.zeros(3)
+    for first, second in itertools.pairwise(corners[1:]):  # a fan of triangles
+        normal += np.cross(first - corners[0], second - corners[0])
+    normal /= math.sqrt(float(normal @ normal))
+    found = [(abs(float(normal @ (point - corners.mean(axis=0)))), "foot on the surface's plane")]
+    for first, second in zip(corners, [*corners[1:], corners[0]], strict=True):
+        outward = np.cross(second - first, normal)
+        outward /= math.sqrt(float(outward @ outward))
+        found.append((float(outward @ (point - first)), "foot within the surface's edges"))
+    return found
+
+
+def _step(
+    problem: ContactProblem,
+    foot: str,
+    other: str,
+    point: np.ndarray,
+    standing: np.ndarray,
+    yaw: float,
+    standing_yaw: float,
+) -> list[tuple[float, str]]:
+    if problem.model == "feet":  # A_{o_in_m} R_k^T (p_o - p_m) <= b
+        reach, local = problem.polytopes.foot[foot], _turn_back(standing - point, yaw)
+    else:  # A_{m_in_o} R_{k-1}^T (p_m - p_o) <= b
+        reach, local = problem.polytopes.foot[other], _turn_back(point - standing, standing_yaw)
+    return [(_excess(reach.normals, reach.offsets, local), "reach of the step")]
+
+
+def _com(
+    problem: ContactProblem,
+    com: np.ndarray,
+    number: int,
+    feet: tuple[tuple[str, np.ndarray, float], ...],
+) -> list[tuple[float, str]]:
+    found = []
+    for name, position, yaw in feet:
+        reach, local = problem.polytopes.com[name], _turn_back(com - position, yaw)
+        text = f"reach of the centre of mass c{number} from {name}"
+        found.append((_excess(reach.normals, reach.offsets, local), text))
+    name, position, yaw = feet[number]  # c0 over the standing foot, c1 over the one that landed
+    local = _turn_back(com - position, yaw)
+    over = max(abs(local[0]) - problem.foot_half_size[0], abs(local[1]) - problem.foot_half_size[1])
+    found.append((float(over), f"centre of mass c{number} over {name}"))
+    return found
+
+
+def _turn_back(vector: np.ndarray, yaw: float) -> np.ndarray:
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    x, y, z = vector
+    return np.array([cosine * x + sine * y, -sine * x + cosine * y, z])
+
+
+def _excess(A: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
+    return float(((A @ point - b) / np.sqrt((A * A).sum(axis=1))).max())
+
+
+def _require_fitting(problem: ContactProblem, plan: ContactPlan) -> Float[np.ndarray, "n 3"]:
+    count = len(problem.phases)
+    if not plan.feasible or plan.footholds is None:
+        raise InputError(f"this plan is '{plan.status}' and has no footholds to check")
+    if len(plan.surfaces) != count or plan.footholds.shape != (count, 3):
+        raise InputError(
+            f"the plan has {len(plan.surfaces)} surfaces and {len(plan.footholds)} footholds,"
+            f" the problem {count} phases"
+        )
+    for index, (name, phase) in enumerate(zip(plan.surfaces, problem.phases, strict=True)):
+        if name not in phase.candidates:
+            raise InputError(
+                f"phase {index} of the plan stands on '{name}', which is none of the problem's"
+                f" candidates there: {', '.join(phase.candidates)}"
+            )
+    if problem.model == "two_com" and (plan.com is None or plan.com.shape != (count, 2, 3)):
+        raise InputError("the plan lacks 'com', two positions a phase, which model two_com needs")
+    numbers = [plan.footholds] if plan.com is None else [plan.footholds, plan.com]
+    if not all(np.isfinite(each).all() for each in numbers):
+        raise InputError("the plan holds a number that is not finite")
+    return plan.footholds

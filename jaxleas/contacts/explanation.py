@@ -1,0 +1,118 @@
+"""Why a step cannot be made: which family of constraints stands in the way, and by how much."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jaxleas.contacts.decision import decide
+from jaxleas.contacts.linear_program import Outcome
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.steps import Family
+from jaxleas.contacts.surfaces import ContactSurface
+
+WORDS = {
+    "step": "reach of the step",
+    "com_reach": "reach of the centre of mass",
+    "com_over": "room for the centre of mass over the foot",
+    "edges": "surface beyond the edges",
+}
+LADDER = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
+"""Amounts by which a family is relaxed [m]; one that needs more is not to blame."""
+
+
+@dataclass(frozen=True)
+class Blame:
+    """What would make a step possible.
+
+    Attributes:
+        short: for each family of constraints to blame, how much more of it suffices [m].
+        surface: another surface of the scene that would do; empty if none, or if all were allowed.
+    """
+
+    short: dict[str, float]
+    surface: str = ""
+
+
+def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> str:
+    """Return a sentence on why `phase` is the first step that cannot be made.
+
+    Args:
+        problem: one whose phases before `phase` can be made.
+        phase: the first that cannot.
+        deadline: of `time.perf_counter` [s].
+    """
+    failing = problem.phases[phase]
+    blame = find_blame(problem.prefix(phase + 1), deadline)
+    names = ", ".join(f"'{name}'" for name in failing.candidates[:6])
+    more = len(failing.candidates) - 6
+    where = f"{names} and {more} more" if more > 0 else names
+    helps = [
+        f"with at most {metres:g} m more {WORDS[name]}"
+        for name, metres in sorted(blame.short.items(), key=lambda item: item[1])
+    ]
+    if blame.surface:
+        helps.append(f"onto '{blame.surface}', which is none of its candidates")
+    sentence = f"phase {phase} ({failing.foot} onto {where}) is the first step that cannot be made"
+    if not helps:
+        return f"{sentence}; relaxing any single family of constraints by 1 m does not help"
+    return f"{sentence}; it could be made {', or '.join(helps)}"
+
+
+def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
+    """Relax each family of constraints, in the last phase alone, until the phases can be made.
+
+    Args:
+        prefix: a problem of which all but the last phase can be made.
+        deadline: of `time.perf_counter` [s].
+    """
+    families: tuple[Family, ...] = ("step",)
+    if prefix.model == "two_com":
+        families = ("step", "com_reach", "com_over")
+    short = {}
+    for family in families:
+        short[family] = _least(lambda m, f=family: decide(prefix, deadline, relaxed={f: m}).outcome)
+    short["edges"] = _least(lambda metres: decide(with_wider(prefix, metres), deadline).outcome)
+    return Blame(
+        {family: metres for family, metres in short.items() if metres is not None},
+        _other_surface(prefix, deadline),
+    )
+
+
+def _least(outcome: Callable[[float], Outcome]) -> float | None:
+    """Return the least amount of the ladder that suffices, by bisection."""
+    failed, enough = -1, len(LADDER)
+    while enough - failed > 1:
+        middle = (failed + enough) // 2 if enough < len(LADDER) else len(LADDER) - 1
+        if outcome(LADDER[middle]) == "optimal":
+            enough = middle
+        elif middle == len(LADDER) - 1:
+            return None
+        else:
+            failed = middle
+    return LADDER[enough]
+
+
+def _other_surface(prefix: ContactProblem, deadline: float) -> str:
+    others = tuple(name for name in prefix.surfaces if name not in prefix.phases[-1].candidates)
+    if not others:
+        return ""
+    before = [phase.candidates for phase in prefix.phases[:-1]]
+    return next(iter(decide(prefix.with_candidates([*before, others]), deadline).surfaces[-1:]), "")
+
+
+def with_wider(problem: ContactProblem, metres: float) -> ContactProblem:
+    """Return the problem with every edge of the last phase's candidates moved outwards [m]."""
+    surfaces, names = dict(problem.surfaces), []
+    for name in problem.phases[-1].candidates:
+        names.append(f"{name} widened")
+        surfaces[names[-1]] = _widened(problem.surfaces[name], metres)
+    before = [phase.candidates for phase in problem.phases[:-1]]
+    return replace(problem, surfaces=surfaces).with_candidates([*before, tuple(names)])
+
+
+def _widened(surface: ContactSurface, metres: float) -> ContactSurface:
+    """Move each corner to where its two edges meet after both moved outwards."""
+    after, before = surface.edge_normals, np.roll(surface.edge_normals, 1, axis=0)
+    along = (after + before) / (1.0 + np.einsum("vk,vk->v", after, before))[:, None]
+    return ContactSurface(surface.vertices + metres * along)

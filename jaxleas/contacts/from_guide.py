@@ -1,0 +1,184 @@
+"""From a guide path and a scene to a contact problem: motion before contact (T 5.2.2, 5.2.3)."""
+
+import math
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
+from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Model, Phase
+from jaxleas.contacts.steps import rotation
+from jaxleas.contacts.surfaces import ContactSurface, make_surface
+from jaxleas.geometry import Polytope, pack_polygons, polygons_meet_polytope
+from jaxleas.geometry.boxes import Box
+from jaxleas.robots import Robot, load_robot
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath, InputError
+
+Candidates = Literal["window", "rom"]
+EVERY = 14
+"""One configuration of so many is kept, N_ref of T 5.2.3: 28 cm at 2 cm a configuration."""
+WINDOW = 0.8
+"""Edge of the square around the root whose surfaces are candidates (T 5.2.3) [m]."""
+BESIDE_ROOT = 0.0848
+"""The feet of the reference configuration stand this far beside the root [m]."""
+MOST_ASIDE = 0.2
+"""A foot that finds no ground within this distance [m] of its reference place cannot stand."""
+
+
+def problem_from_guide(
+    guide: GuidePath,
+    scene: Scene,
+    *,
+    robot: str = "talos",
+    model: Model = "two_com",
+    every: int = EVERY,
+    candidates: Candidates = "window",
+    window: float = WINDOW,
+    first_foot: str = "LF",
+    polytopes: StepPolytopes | None = None,
+) -> ContactProblem:
+    """Make one step of each kept configuration, its foot oriented as the root is there.
+
+    The feet first stand on the ground beside the first configuration; configurations `every`, 2
+    `every`, ... and the last of the guide are kept, and feet alternate.
+
+    Args:
+        guide: a guide path.
+        scene: whose surfaces it crosses.
+        robot: its name.
+        model: "two_com" or "feet".
+        every: keep one configuration of so many.
+        candidates: "window": surfaces that meet a square around the root, turned with it; "rom":
+            those that meet the range of motion of the leg that moves.
+        window: the square's edge [m].
+        first_foot: which moves first.
+        polytopes: instead of the robot's own.
+
+    Raises:
+        InputError: the guide is too short, not finite, or leaves the scene (where is said).
+    """
+    _require_usable(guide, every, window, first_foot)
+    described = load_robot(robot)
+    surfaces = {
+        name: make_surface(vertices, f"surface '{name}' of the scene")
+        for name, vertices in scene.surfaces.items()
+    }
+    initial = _initial(guide, surfaces, described)
+    finder = _Finder(surfaces, described, window, candidates)
+    last = len(guide) - 1
+    kept = [*range(every, last, every), last]
+    foot, phases = first_foot, []
+    for index in kept:
+        names = finder.find(guide.position[index], float(guide.yaw[index]), foot)
+        if not names:
+            x, y, z = guide.position[index]
+            raise InputError(
+                f"the guide leaves the scene: around configuration {index}, with its root at"
+                f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}"
+            )
+        phases.append(Phase(foot, wrap(guide.yaw[index]), names, guide.position[index]))
+        foot = "RF" if foot == "LF" else "LF"
+    return ContactProblem(
+        robot=robot,
+        model=model,
+        surfaces=surfaces,
+        initial=initial,
+        phases=tuple(phases),
+        polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
+        foot_half_size=described.foot_half_size,
+    )
+
+
+def wrap(angle: float) -> float:
+    """Return an angle in [-pi, pi) [rad]."""
+    return (float(angle) + math.pi) % (2.0 * math.pi) - math.pi
+
+
+class _Finder:
+    """Finds the candidate surfaces around a root."""
+
+    def __init__(
+        self,
+        surfaces: dict[str, ContactSurface],
+        robot: Robot,
+        window: float,
+        candidates: Candidates,
+    ) -> None:
+        self.names = list(surfaces)
+        self.packed = pack_polygons([surface.vertices for surface in surfaces.values()])
+        reach = [limb.range_of_motion for limb in robot.limbs]
+        if candidates == "window":
+            low = min(float(each.vertices[:, 2].min()) for each in reach)
+            high = max(float(each.vertices[:, 2].max()) for each in reach)
+            half = 0.5 * window
+            square = Polytope.from_box(Box((-half, -half, low), (half, half, high)))
+            reach = [square, square]
+        self.reach: dict[str, Polytope] = dict(zip(FEET, reach, strict=True))
+
+    def find(self, root: np.ndarray, yaw: float, foot: str) -> tuple[str, ...]:
+        near = np.linalg.norm(self.packed[:, :, :2].mean(axis=1) - root[:2], axis=1)
+        order = np.argsort(near, kind="stable")  # nearest first: the order that files show
+        local = (self.packed[order] - root) @ rotation(yaw)
+        meets = polygons_meet_polytope(local, self.reach[foot])
+        return tuple(self.names[i] for i in order[meets])
+
+
+def _initial(
+    guide: GuidePath, surfaces: dict[str, ContactSurface], robot: Robot
+) -> dict[str, FootPose]:
+    """Stand each foot on the ground nearest to its reference place beside the first root."""
+    yaw, root = wrap(guide.yaw[0]), guide.position[0]
+    lowest = min(float(limb.range_of_motion.vertices[:, 2].min()) for limb in robot.limbs)
+    poses = {}
+    for foot, side in zip(FEET, (BESIDE_ROOT, -BESIDE_ROOT), strict=True):
+        place = root + rotation(yaw) @ np.array([0.0, side, 0.0])
+        found = [nearest_below(surface, place) for surface in surfaces.values()]
+        reachable = [
+            (aside, -float(point[2]), tuple(point.tolist()))
+            for point, aside in found
+            if aside <= MOST_ASIDE and lowest - 0.1 <= point[2] - root[2] <= 0.0
+        ]
+        if not reachable:
+            raise InputError(
+                f"the guide starts where {foot} cannot stand: no surface lies within"
+                f" {MOST_ASIDE:g} m of ({place[0]:.2f}, {place[1]:.2f}) and within a leg's length"
+                f" below the root at {root[2]:.2f} m"
+            )
+        _, _, point = min(reachable)  # the nearest; of those right below, the highest
+        poses[foot] = FootPose(np.array(point), yaw)
+    return poses
+
+
+def nearest_below(
+    surface: ContactSurface, place: Float[np.ndarray, " 3"]
+) -> tuple[Float[np.ndarray, " 3"], float]:
+    """Return the point of a surface that is horizontally nearest to a place, and how far it is [m].
+
+    A wall has no such point: its distance is infinite.
+    """
+    if abs(surface.normal[2]) < 1e-3:
+        return place, math.inf
+    corners, target = surface.vertices[:, :2], place[:2]
+    along = np.roll(corners, -1, axis=0) - corners
+    outside = along[:, 1] * (target - corners)[:, 0] - along[:, 0] * (target - corners)[:, 1]
+    if (outside > 0.0).any():  # counter-clockwise from above: right of an edge is outside
+        share = np.einsum("vk,vk->v", target - corners, along) / np.einsum("vk,vk->v", along, along)
+        on_edges = corners + np.clip(share, 0.0, 1.0)[:, None] * along
+        target = on_edges[np.argmin(np.linalg.norm(on_edges - place[:2], axis=1))]
+    z = (surface.offset - surface.normal[:2] @ target) / surface.normal[2]
+    return np.array([*target, z]), float(np.linalg.norm(target - place[:2]))
+
+
+def _require_usable(guide: GuidePath, every: int, window: float, first_foot: str) -> None:
+    if every < 1:
+        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
+    if not 0.0 < window < 100.0:
+        raise InputError(f"window {window} must be an edge in metres, 0.8 is usual")
+    if first_foot not in FEET:
+        raise InputError(f"first foot must be LF or RF, not {first_foot!r}")
+    if len(guide) < 2:
+        raise InputError(f"the guide has {len(guide)} configurations; a step needs at least 2")
+    if not (np.isfinite(guide.position).all() and np.isfinite(guide.yaw).all()):
+        raise InputError("the guide's position or yaw holds a number that is not finite")

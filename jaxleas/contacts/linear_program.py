@@ -1,0 +1,157 @@
+"""Linear and mixed-integer programs, and HiGHS to solve them."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import highspy
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy import sparse
+
+Outcome = Literal["optimal", "infeasible", "time_limit", "failed"]
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """min cost . x, low <= x <= high, row_low <= A x <= row_high.
+
+    Attributes:
+        cost: linear.
+        low: bounds of the variables.
+        high: likewise.
+        A: sparse rows.
+        row_low: bounds of the rows.
+        row_high: likewise.
+        integer: which variables are integer.
+    """
+
+    cost: Float[np.ndarray, " n"]
+    low: Float[np.ndarray, " n"]
+    high: Float[np.ndarray, " n"]
+    A: sparse.csr_array
+    row_low: Float[np.ndarray, " m"]
+    row_high: Float[np.ndarray, " m"]
+    integer: Bool[np.ndarray, " n"] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What HiGHS found.
+
+    Attributes:
+        outcome: "failed" stands for numerical trouble; "optimal" to within `GAP` with integers.
+        x: the variables; meaningful when optimal.
+        duals: of the rows.
+    """
+
+    outcome: Outcome
+    x: Float[np.ndarray, " n"]
+    duals: Float[np.ndarray, " m"] = field(default_factory=lambda: np.zeros(0))
+
+
+TOLERANCE = 1e-9
+"""On rows and bounds of linear programs [m]."""
+GAP = 0.01
+"""An integer solution whose cost is within this fraction of the best possible will do."""
+
+
+def solve(program: Program, time_limit: float = np.inf) -> Solution:
+    """Solve a program on one thread.
+
+    Args:
+        program: what to solve.
+        time_limit: [s]; an integer solution found until then is returned, though not proved best.
+    """
+    if time_limit <= 0.0:
+        return Solution("time_limit", np.zeros(0))
+    highs = highspy.Highs()
+    highs.silent()
+    highs.setOptionValue("threads", 1)
+    highs.setOptionValue("time_limit", float(min(time_limit, 1e9)))
+    is_mip = program.integer is not None and bool(program.integer.any())
+    if is_mip:  # the choices are easy to find: these two cost more than they bring
+        highs.setOptionValue("mip_heuristic_run_feasibility_jump", False)
+        highs.setOptionValue("mip_detect_symmetry", False)
+        highs.setOptionValue("mip_rel_gap", GAP)
+    else:
+        highs.setOptionValue("presolve", "off")  # takes longer than these programs
+        highs.setOptionValue("primal_feasibility_tolerance", TOLERANCE)
+        highs.setOptionValue("dual_feasibility_tolerance", 1e-8)
+    highs.passModel(_to_highs(program))
+    highs.run()
+    outcome = _OUTCOMES.get(highs.getModelStatus(), "failed")
+    solution = highs.getSolution()
+    if is_mip and outcome == "time_limit" and highs.getInfo().primal_solution_status == _FEASIBLE:
+        outcome = "optimal"
+    return Solution(outcome, np.array(solution.col_value), np.array(solution.row_dual))
+
+
+_FEASIBLE = int(highspy.SolutionStatus.kSolutionStatusFeasible)
+_OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
+    highspy.HighsModelStatus.kOptimal: "optimal",
+    highspy.HighsModelStatus.kInfeasible: "infeasible",
+    highspy.HighsModelStatus.kUnboundedOrInfeasible: "infeasible",
+    highspy.HighsModelStatus.kTimeLimit: "time_limit",
+}
+
+
+def _to_highs(program: Program) -> highspy.HighsLp:
+    lp = highspy.HighsLp()
+    lp.num_col_, lp.num_row_ = len(program.cost), len(program.row_low)
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = program.cost, program.low, program.high
+    lp.row_lower_, lp.row_upper_ = program.row_low, program.row_high
+    matrix = lp.a_matrix_
+    matrix.format_ = highspy.MatrixFormat.kRowwise
+    matrix.start_ = program.A.indptr  # pyright: ignore[reportAttributeAccessIssue]
+    matrix.index_ = program.A.indices  # pyright: ignore[reportAttributeAccessIssue]
+    matrix.value_ = program.A.data  # pyright: ignore[reportAttributeAccessIssue]
+    if program.integer is not None:
+        kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
+        lp.integrality_ = [kinds[int(each)] for each in program.integer]
+    return lp
+
+
+@dataclass
+class Rows:
+    """Collects rows of a sparse matrix, dense block by dense block."""
+
+    columns: int
+    row: list[Int[np.ndarray, " e"]] = field(default_factory=list)
+    column: list[Int[np.ndarray, " e"]] = field(default_factory=list)
+    value: list[Float[np.ndarray, " e"]] = field(default_factory=list)
+    low: list[Float[np.ndarray, " r"]] = field(default_factory=list)
+    high: list[Float[np.ndarray, " r"]] = field(default_factory=list)
+    count: int = 0
+
+    def add(
+        self,
+        blocks: list[tuple[Int[np.ndarray, " c"], Float[np.ndarray, "r c"]]],
+        high: Float[np.ndarray, " r"],
+        low: Float[np.ndarray, " r"] | None = None,
+    ) -> None:
+        """Append rows low <= sum_i block_i x[columns_i] <= high; low is -infinity if not given."""
+        size = len(high)
+        here = np.arange(self.count, self.count + size)
+        for columns, block in blocks:
+            self.row.append(np.repeat(here, len(columns)))
+            self.column.append(np.tile(columns, size))
+            self.value.append(np.ascontiguousarray(block).reshape(-1))
+        self.high.append(high)
+        self.low.append(np.full(size, -np.inf) if low is None else low)
+        self.count += size
+
+    def matrix(self) -> sparse.csr_array:
+        """Return all rows."""
+        if not self.row:
+            return sparse.csr_array((0, self.columns))
+        entries = np.concatenate(self.value)
+        where = (np.concatenate(self.row), np.concatenate(self.column))
+        made = sparse.csr_array((entries, where), shape=(self.count, self.columns))
+        made.eliminate_zeros()
+        return made
+
+    def bounds(self) -> tuple[Float[np.ndarray, " m"], Float[np.ndarray, " m"]]:
+        """Return the lower and the upper bounds of all rows."""
+        if not self.low:
+            return np.zeros(0), np.zeros(0)
+        return np.concatenate(self.low), np.concatenate(self.high)

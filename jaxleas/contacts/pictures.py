@@ -1,0 +1,140 @@
+"""A contact plan from above and from the side: scene, guide, footholds, centre of mass."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jaxleas.contacts.plan import ContactPlan
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.steps import rotation
+from jaxleas.files import atomic_path
+from jaxleas.types.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLOURS = {"LF": "tab:red", "RF": "goldenrod"}
+GUIDE, COM, FAILED = "tab:blue", "black", "magenta"
+VIEWS = {"above": (0, 1), "from the side": (0, 2)}
+"""Which coordinates each view shows."""
+AROUND = 0.4  # shown beyond footholds and roots [m]
+
+
+def require_picture(path: str | Path) -> None:
+    """Refuse a picture's name whose type cannot be drawn."""
+    if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
+
+
+def draw_plan(path: str | Path, problem: ContactProblem, plan: ContactPlan) -> None:
+    """Draw a plan, or where planning fails, in two views.
+
+    Surfaces are grey, the guide blue, left feet red and right feet yellow, the centre of mass
+    black. Without a plan, the candidates of the first step that cannot be made are outlined, and
+    the reason is the title.
+
+    Args:
+        path: of the picture (.png, .svg, .pdf).
+        problem: the contact problem.
+        plan: its answer.
+
+    Raises:
+        InputError: the picture cannot be written, or is of an unknown type.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    require_picture(path)
+    figure = Figure(figsize=(12, 7), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(2, 1)
+    for ax, (view, shown) in zip(axes, VIEWS.items(), strict=True):
+        _draw_surfaces(ax, problem, plan, shown)
+        _draw_guide(ax, problem, shown)
+        _draw_feet(ax, problem, plan, shown)
+        _frame(ax, problem, plan, shown)
+        ax.set_ylabel(f"{'xyz'[shown[1]]} [m], {view}")
+    axes[1].set_xlabel("x [m]")
+    axes[0].legend(loc="upper right", fontsize="small")
+    figure.suptitle(_title(problem, plan), fontsize="medium", wrap=True)
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, dpi=110)
+
+
+def _title(problem: ContactProblem, plan: ContactPlan) -> str:
+    outcome = plan.status if plan.feasible else f"{plan.status}: {plan.reason}"
+    return f"{plan.planner}, model {problem.model}, {len(problem)} phases: {outcome}"
+
+
+def _draw_surfaces(
+    ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]
+) -> None:
+    used, failing = set(plan.surfaces), failing_candidates(problem, plan)
+    for name, surface in problem.surfaces.items():
+        corners = surface.vertices[:, list(shown)]
+        face = "0.72" if name in used else "0.88"
+        edge, width = (FAILED, 2.0) if name in failing else ("0.4", 0.6)
+        ax.fill(*corners.T, facecolor=face, edgecolor=edge, linewidth=width, zorder=1)
+
+
+def failing_candidates(problem: ContactProblem, plan: ContactPlan) -> tuple[str, ...]:
+    """Return the candidates of the first phase that cannot be made; none when it is not known."""
+    last = plan.last_feasible_phase
+    if plan.feasible or last is None or last + 1 >= len(problem):
+        return ()
+    return problem.phases[last + 1].candidates
+
+
+def _draw_guide(ax: "Axes", problem: ContactProblem, shown: tuple[int, int]) -> None:
+    roots = [phase.root for phase in problem.phases if phase.root is not None]
+    if roots:
+        path = np.array(roots)[:, list(shown)]
+        ax.plot(*path.T, ".-", color=GUIDE, linewidth=1.2, label="guide", zorder=2)
+
+
+def _draw_feet(
+    ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]
+) -> None:
+    feet = [(foot, pose.position, pose.yaw) for foot, pose in problem.initial.items()]
+    if plan.footholds is not None and len(plan.footholds):
+        for phase, point in zip(problem.phases, plan.footholds, strict=False):
+            feet.append((phase.foot, point, phase.yaw))
+    if plan.com is not None and len(plan.com):
+        com = plan.com.reshape(-1, 3)[:, list(shown)]
+        ax.plot(*com.T, "-", color=COM, linewidth=0.8, label="centre of mass", zorder=4)
+    labelled = set()
+    for foot, point, yaw in feet:
+        corners = point + sole(problem.foot_half_size) @ rotation(yaw).T
+        label = None if foot in labelled else {"LF": "left foot", "RF": "right foot"}[foot]
+        labelled.add(foot)
+        ax.fill(
+            *corners[:, list(shown)].T,
+            facecolor=COLOURS[foot],
+            edgecolor=COLOURS[foot],
+            alpha=0.75,
+            label=label,
+            zorder=3,
+        )
+
+
+def sole(half_size: tuple[float, float]) -> np.ndarray:
+    """Return the corners of a sole around its middle [m]."""
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half_size
+    return np.column_stack([corners, np.zeros(4)])
+
+
+def _frame(ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]) -> None:
+    """Show what the robot crosses, not the whole scene."""
+    points = [pose.position for pose in problem.initial.values()]
+    points += [phase.root for phase in problem.phases if phase.root is not None]
+    if plan.footholds is not None:
+        points += list(plan.footholds)
+    if not plan.feasible:
+        names = {name for phase in problem.phases for name in phase.candidates}
+        points += [corner for name in names for corner in problem.surfaces[name].vertices]
+    here = np.array(points)[:, list(shown)]
+    low, high = here.min(axis=0) - AROUND, here.max(axis=0) + AROUND
+    ax.set_xlim(low[0], high[0])
+    ax.set_ylim(low[1], high[1])
+    ax.set_aspect("equal", adjustable="box")

@@ -1,0 +1,227 @@
+"""Footholds on chosen surfaces: a linear program, with the centre of mass put back by cuts."""
+
+import time
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+from scipy import sparse
+
+from jaxleas.contacts.com import foot_yaws, place_com
+from jaxleas.contacts.least_distance import least_distance
+from jaxleas.contacts.linear_program import Outcome, Program, Rows, Solution, solve
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.steps import INITIAL, Step, rotation
+from jaxleas.types.errors import InputError
+
+MOST_MARGIN = 0.02
+"""More distance to spare than this [m] is not asked for."""
+LEAST_MARGIN = -1e-7
+"""Footholds that violate a constraint by more [m] are none (the certificate accepts 1e-6)."""
+KEPT_MARGIN = 1e-6
+"""Distance to spare that a cost must leave, where there is so much: the solver's tolerance [m]."""
+MAX_ROUNDS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Footholds on given surfaces, or the news that there are none.
+
+    Attributes:
+        outcome: "optimal" when there are some, "infeasible" when provably none.
+        steps: as given, with the cuts that were found on the way.
+        footholds: of each phase [m].
+        com: of each phase [m]; None for the model "feet".
+    """
+
+    outcome: Outcome
+    steps: list[Step]
+    footholds: Float[np.ndarray, "n 3"] | None = None
+    com: Float[np.ndarray, "n 2 3"] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """Where footholds should be, horizontally.
+
+    Attributes:
+        points: x, y of each phase [m].
+        cost: "linear": sum of |x - x'| + |y - y'|; "quadratic": sum of squared distances.
+    """
+
+    points: Float[np.ndarray, "n 2"]
+    cost: Literal["linear", "quadratic"] = "linear"
+
+
+def place(
+    problem: ContactProblem,
+    steps: list[Step],
+    surfaces: tuple[str, ...],
+    deadline: float = np.inf,
+    targets: Targets | None = None,
+) -> Placement:
+    """Place each foot on its surface, with the most distance to spare or nearest to targets.
+
+    Args:
+        problem: the contact problem.
+        steps: of `make_steps`, with or without cuts.
+        surfaces: one a phase.
+        deadline: of `time.perf_counter` [s].
+        targets: minimise the distance to these, else maximise the least slack.
+    """
+    for _ in range(MAX_ROUNDS):
+        outcome, footholds = _place_feet(problem, steps, surfaces, deadline, targets)
+        if footholds is None:
+            return Placement(outcome, steps)
+        com, steps, found = put_com(problem, steps, footholds)
+        if not found:
+            return Placement("optimal", steps, footholds, com)
+    return Placement("failed", steps)
+
+
+def put_com(
+    problem: ContactProblem, steps: list[Step], footholds: Float[np.ndarray, "n 3"]
+) -> tuple[Float[np.ndarray, "n 2 3"] | None, list[Step], int]:
+    """Put the centre of mass over given footholds.
+
+    Returns:
+        Its places [m], the steps with cuts for those that leave it none, and how many these are.
+    """
+    if problem.model != "two_com":
+        return None, steps, 0
+    com, steps, found = np.zeros((len(steps), 2, 3)), list(steps), 0
+    for index, yaws in enumerate(foot_yaws(problem, steps)):
+        step = steps[index]
+        stood = standing_point(problem, step, footholds)
+        turns = rotation(yaws[0]), rotation(yaws[1])
+        places, cuts = place_com(step, footholds[index] - stood, problem.foot_half_size, turns)
+        com[index] = stood + places
+        if cuts:
+            found += 1
+            normals, bounds = zip(*cuts, strict=True)
+            steps[index] = step.with_cuts(np.array(normals), np.array(bounds))
+    return com, steps, found
+
+
+def standing_point(
+    problem: ContactProblem, step: Step, footholds: Float[np.ndarray, "n 3"]
+) -> Float[np.ndarray, " 3"]:
+    """Return where the foot stands that does not move [m]."""
+    if step.standing != INITIAL:
+        return footholds[step.standing]
+    return problem.initial["RF" if step.foot == "LF" else "LF"].position
+
+
+def _place_feet(
+    problem: ContactProblem,
+    steps: list[Step],
+    surfaces: tuple[str, ...],
+    deadline: float,
+    targets: Targets | None,
+) -> tuple[Outcome, Float[np.ndarray, "n 3"] | None]:
+    """Solve for two coordinates in the plane of each surface, and the least slack."""
+    count = len(steps)
+    planes = [problem.surfaces[name] for name in surfaces]
+    origin = np.array([plane.vertices.mean(axis=0) for plane in planes])
+    columns = np.arange(2 * count).reshape(count, 2)
+    slack = np.array([2 * count])
+    rows = Rows(2 * count + 1)
+    for index, (plane, step) in enumerate(zip(planes, steps, strict=True)):
+        inside = plane.edge_offsets - plane.edge_normals @ origin[index]
+        ones = np.ones((len(inside), 1))
+        rows.add([(columns[index], plane.edge_normals @ plane.basis.T), (slack, ones)], inside)
+        ones = np.ones((len(step.b), 1))
+        blocks = [(columns[index], step.A @ plane.basis.T), (slack, ones)]
+        bound = step.b - step.A @ origin[index]
+        if step.standing == INITIAL:
+            bound = bound + step.A @ standing_point(problem, step, origin)
+        else:
+            blocks.append((columns[step.standing], -step.A @ planes[step.standing].basis.T))
+            bound = bound + step.A @ origin[step.standing]
+        rows.add(blocks, bound)
+    program = _most_slack(rows, count)
+    solution = solve(program, deadline - time.perf_counter())
+    if solution.outcome != "optimal":
+        return solution.outcome, None
+    margin = float(solution.x[-1])
+    if margin < LEAST_MARGIN:
+        return "infeasible", None
+    bases = np.stack([plane.basis for plane in planes])
+    if targets is not None:
+        kept = _with_margin(program, min(margin, KEPT_MARGIN))
+        if targets.cost == "linear":
+            solution = solve(
+                _nearest_linear(kept, origin, bases, targets), deadline - time.perf_counter()
+            )
+        else:
+            solution = _nearest_quadratic(kept, origin, bases, targets)
+        if solution.outcome != "optimal":
+            return solution.outcome, None
+    local = solution.x[: 2 * count].reshape(count, 1, 2)
+    return "optimal", origin + (local @ bases)[:, 0, :]
+
+
+def _most_slack(rows: Rows, count: int) -> Program:
+    cost = np.zeros(2 * count + 1)
+    cost[-1] = -1.0
+    row_low, row_high = rows.bounds()
+    return Program(
+        cost=cost,
+        low=np.append(np.full(2 * count, -np.inf), -1.0),
+        high=np.append(np.full(2 * count, np.inf), MOST_MARGIN),
+        A=rows.matrix(),
+        row_low=row_low,
+        row_high=row_high,
+    )
+
+
+def _nearest_quadratic(
+    program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
+) -> Solution:
+    """Minimise sum |u|^2, u = p_xy - target = origin_xy + B' w - target, over the same rows."""
+    flat = bases[:, :, :2].transpose(0, 2, 1)  # phase, world x y, coordinate in the plane
+    if (np.abs(np.linalg.det(flat)) < 1e-3).any():
+        raise InputError("a quadratic cost is horizontal: it needs surfaces that are no walls")
+    back = sparse.block_diag(list(np.linalg.inv(flat)), format="csr")
+    away = (targets.points - origin[:, :2]).ravel()
+    G = sparse.csr_array(program.A @ back).toarray()
+    length = np.linalg.norm(G, axis=1)
+    bounds = length > 1e-12  # a row without horizontal part is a constant
+    h = (program.row_high - G @ away)[bounds] / length[bounds]
+    nearest = least_distance(G[bounds] / length[bounds, None], h)
+    if nearest is None:
+        return Solution("failed", np.zeros(0))
+    return Solution("optimal", np.asarray(back @ (nearest + away)))
+
+
+def _nearest_linear(
+    program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
+) -> Program:
+    """Return the program that minimises sum u over the same rows and |p_xy - target| <= u."""
+    size = 2 * len(origin)
+    flat = sparse.block_diag([each[:, :2].T for each in bases])
+    apart = -sparse.identity(size)
+    away = (targets.points - origin[:, :2]).ravel()
+    before = sparse.hstack([program.A, sparse.csr_array((len(program.row_high), size))])
+    distances = sparse.vstack([sparse.hstack([sign * flat, apart]) for sign in (1.0, -1.0)])
+    return Program(
+        cost=np.append(np.zeros(size), np.ones(size)),
+        low=np.append(program.low, np.zeros(size)),
+        high=np.append(program.high, np.full(size, np.inf)),
+        A=sparse.csr_array(sparse.vstack([before, distances])),
+        row_low=np.append(program.row_low, np.full(2 * size, -np.inf)),
+        row_high=np.concatenate([program.row_high, away, -away]),
+    )
+
+
+def _with_margin(program: Program, margin: float) -> Program:
+    """Return the program with its least slack fixed instead of maximised, and without cost."""
+    return Program(
+        cost=program.cost[:-1],
+        low=program.low[:-1],
+        high=program.high[:-1],
+        A=sparse.csr_array(program.A[:, :-1]),
+        row_low=program.row_low,
+        row_high=program.row_high - margin,  # in metres: every row has slack 1
+    )

@@ -1,0 +1,127 @@
+"""The contact plan: what a planner answers, as a value and as a file (docs/contacts.md)."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.files import read_json, write_json
+from jaxleas.types.errors import InputError
+
+Status = Literal["feasible", "infeasible", "time_limit", "not_found"]
+STATUSES: tuple[Status, ...] = ("feasible", "infeasible", "time_limit", "not_found")
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPlan:
+    """A planner's answer.
+
+    Attributes:
+        planner: "mip" or "sl1m".
+        feasible: whether a plan was found.
+        status: "feasible"; "infeasible" (proved); "time_limit" (not decided in time); "not_found"
+            (an incomplete planner gave up; proves nothing).
+        reason: why there is none, a sentence; empty when there is one.
+        surfaces: name of the surface of each phase; of the phases planned.
+        footholds: of each phase, in the world [m].
+        com: two positions of the centre of mass a phase [m]; None for the model "feet".
+        last_feasible_phase: the last phase that can be made (the last of all when feasible, -1
+            when none can); None when not asked for.
+        max_violation: by the certificate [m]; None without plan.
+        seconds: spent planning.
+        combinations: of surfaces tried one after the other; None where a solver does that inside.
+        undecided: phases that the L1 relaxation left without a surface (SL1M only).
+        robustness: of each posture, where the planner knows it.
+    """
+
+    planner: str
+    feasible: bool
+    status: Status
+    reason: str = ""
+    surfaces: tuple[str, ...] = ()
+    footholds: Float[np.ndarray, "n 3"] | None = None
+    com: Float[np.ndarray, "n 2 3"] | None = None
+    last_feasible_phase: int | None = None
+    max_violation: float | None = None
+    seconds: float = 0.0
+    combinations: int | None = None
+    undecided: int | None = None
+    robustness: tuple[float, ...] | None = None
+
+    def but(self, **changes: Any) -> "ContactPlan":
+        """Return the plan with some attributes changed."""
+        return replace(self, **changes)
+
+
+def write_plan(path: str | Path, plan: ContactPlan) -> None:
+    """Write a plan as JSON, whole or not at all."""
+    certificate = None if plan.max_violation is None else {"max_violation_m": plan.max_violation}
+    write_json(
+        path,
+        {
+            "version": 1,
+            "planner": plan.planner,
+            "feasible": plan.feasible,
+            "status": plan.status,
+            "reason": plan.reason,
+            "surfaces": list(plan.surfaces),
+            "footholds": [] if plan.footholds is None else plan.footholds.tolist(),
+            "com": None if plan.com is None else plan.com.tolist(),
+            "last_feasible_phase": plan.last_feasible_phase,
+            "robustness": None if plan.robustness is None else list(plan.robustness),
+            "certificate": certificate,
+            "seconds": plan.seconds,
+            "combinations": plan.combinations,
+            "undecided": plan.undecided,
+        },
+    )
+
+
+def read_plan(path: str | Path) -> ContactPlan:
+    """Read a plan from JSON.
+
+    Raises:
+        InputError: the file is no plan; says which key is wrong.
+    """
+    content = read_json(path)
+    needed = ("planner", "feasible", "status", "surfaces", "footholds")
+    if not isinstance(content, dict) or not all(key in content for key in needed):
+        raise InputError(f"{path} is not a contact plan: it needs the keys {', '.join(needed)}")
+    if content["status"] not in STATUSES or not isinstance(content["feasible"], bool):
+        raise InputError(
+            f"{path}: status must be one of {', '.join(STATUSES)} and feasible true or false"
+        )
+    surfaces = content["surfaces"]
+    if not isinstance(surfaces, list) or not all(isinstance(name, str) for name in surfaces):
+        raise InputError(f"{path}: surfaces must be a list of surface names, one a phase")
+    com = content.get("com")
+    certificate = content.get("certificate") or {}
+    return ContactPlan(
+        planner=str(content["planner"]),
+        feasible=content["feasible"],
+        status=content["status"],
+        reason=str(content.get("reason") or ""),
+        surfaces=tuple(surfaces),
+        footholds=_numbers(path, "footholds", content["footholds"], (len(surfaces), 3)),
+        com=None if com is None else _numbers(path, "com", com, (len(surfaces), 2, 3)),
+        last_feasible_phase=content.get("last_feasible_phase"),
+        max_violation=certificate.get("max_violation_m"),
+        seconds=float(content.get("seconds") or 0.0),
+        combinations=content.get("combinations"),
+        undecided=content.get("undecided"),
+        robustness=content.get("robustness") and tuple(content["robustness"]),
+    )
+
+
+def _numbers(path: str | Path, key: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    try:
+        array = np.array(value, dtype=np.float64).reshape((0, *shape[1:]) if value == [] else -1)
+        array = array.reshape(shape)
+    except (TypeError, ValueError) as error:
+        wanted = " x ".join(str(size) for size in shape)
+        raise InputError(f"{path}: {key} must hold {wanted} numbers, one row a phase") from error
+    if not np.isfinite(array).all():
+        raise InputError(f"{path}: {key} holds a number that is not finite")
+    return array

@@ -1,0 +1,96 @@
+"""How far a step and the centre of mass reach: four polytopes in the frame of a foot."""
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib import resources
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.files import read_json
+from jaxleas.geometry.polytopes import Polytope
+from jaxleas.types.errors import InputError
+
+NAMES = ("RF_in_LF", "LF_in_RF", "COM_in_LF", "COM_in_RF")
+
+
+@dataclass(frozen=True, eq=False)
+class StepPolytopes:
+    """Relative reach; "X_in_Y" is X's position in Y's frame (x forward, y left, z up).
+
+    Attributes:
+        foot: by the standing foot: where the other one may be, e.g. `foot["LF"]` is RF_in_LF.
+        com: by the foot: where the centre of mass may be; empty for the model "feet".
+    """
+
+    foot: dict[str, Polytope]
+    com: dict[str, Polytope]
+
+    @cached_property
+    def foot_corners(self) -> dict[str, Float[np.ndarray, "V 3"]]:
+        """Corners of each foot polytope [m]."""
+        return {name: polytope.vertices for name, polytope in self.foot.items()}
+
+
+def make_polytope(A: np.ndarray, b: np.ndarray) -> Polytope:
+    """Return A x <= b with rows scaled to unit length, so that slack is in metres."""
+    length = np.linalg.norm(A, axis=1)
+    return Polytope(A / length[:, None], b / length)
+
+
+def read_polytopes(where: str, content: object, model: str) -> StepPolytopes:
+    """Return the polytopes of a parsed {"RF_in_LF": {"A", "b"}, ...}.
+
+    Raises:
+        InputError: one is missing or malformed; says which.
+    """
+    needed = NAMES if model == "two_com" else NAMES[:2]
+    if not isinstance(content, dict):
+        raise InputError(f"{where} must be an object with {', '.join(needed)}, each {{A, b}}")
+    missing = [name for name in needed if name not in content]
+    if missing:
+        raise InputError(f"{where} lacks {', '.join(missing)}, which model '{model}' needs")
+    made = {name: _polytope(f"{where}: {name}", content[name]) for name in NAMES if name in content}
+    return StepPolytopes(
+        foot={name[-2:]: each for name, each in made.items() if not name.startswith("COM")},
+        com={name[-2:]: each for name, each in made.items() if name.startswith("COM")},
+    )
+
+
+def _polytope(where: str, content: object) -> Polytope:
+    if not isinstance(content, dict) or not {"A", "b"} <= content.keys():
+        raise InputError(f"{where} must be {{A: [[x, y, z], ...], b: [...]}} with A x <= b")
+    try:
+        A, b = np.array(content["A"], np.float64), np.array(content["b"], np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{where}: A and b must be lists of numbers") from error
+    if A.ndim != 2 or A.shape[1:] != (3,) or b.shape != A.shape[:1]:
+        raise InputError(
+            f"{where}: A has shape {A.shape} and b {b.shape}; give n rows of 3, and n numbers"
+        )
+    if not (np.isfinite(A).all() and np.isfinite(b).all()):
+        raise InputError(f"{where} holds a number that is not finite")
+    if (np.linalg.norm(A, axis=1) < 1e-9).any():
+        raise InputError(f"{where}: A has a row of zeros, which bounds nothing")
+    polytope = make_polytope(A, b)
+    try:
+        _ = polytope.vertices
+    except InputError as error:
+        raise InputError(f"{where} bounds no volume: {error}") from error
+    return polytope
+
+
+@cache
+def load_step_polytopes(robot: str) -> StepPolytopes:
+    """Return the package's own polytopes of a robot (scripts/make_talos_steps.py).
+
+    Raises:
+        InputError: there are none for this robot.
+    """
+    shipped = resources.files("jaxleas.contacts") / "data" / f"{robot}_steps.json"
+    if not shipped.is_file():
+        raise InputError(
+            f"there are no step polytopes for robot {robot!r}; give the problem its 'polytopes'"
+        )
+    with resources.as_file(shipped) as path:
+        return read_polytopes(str(path), read_json(path)["polytopes"], "two_com")

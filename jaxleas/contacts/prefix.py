@@ -1,0 +1,35 @@
+"""The last step that can be made, by dichotomic search (T 5.2.3)."""
+
+from collections.abc import Callable
+
+from jaxleas.contacts.linear_program import Outcome
+from jaxleas.contacts.problem import ContactProblem
+
+
+def last_feasible_phase(
+    problem: ContactProblem,
+    can_be_made: Callable[[ContactProblem], Outcome | str],
+    infeasible_phase: int | None = None,
+) -> int | None:
+    """Return the last phase up to which a plan exists; -1 if not even the first can be made.
+
+    Args:
+        problem: one that has no plan.
+        can_be_made: judges the problem of the first phases; "optimal" means yes. If the first n
+            phases have a plan, so have the first n - 1: n is found in log2 questions.
+        infeasible_phase: a phase known to be impossible, if any; by default the last.
+
+    Returns:
+        The phase's index, or None if a question was not answered in time.
+    """
+    made, failed = -1, len(problem) - 1 if infeasible_phase is None else infeasible_phase
+    while failed - made > 1:
+        middle = (made + failed) // 2
+        outcome = can_be_made(problem.prefix(middle + 1))
+        if outcome in ("time_limit", "failed"):
+            return None
+        if outcome == "optimal":
+            made = middle
+        else:
+            failed = middle
+    return made

@@ -1,0 +1,92 @@
+"""The contact problem: which foot moves when, onto which of which surfaces (T 5.1, B.1)."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.polytopes import StepPolytopes
+from jaxleas.contacts.surfaces import ContactSurface
+
+Model = Literal["two_com", "feet"]
+FEET: tuple[str, str] = ("LF", "RF")
+"""Left before right."""
+
+
+@dataclass(frozen=True, eq=False)
+class FootPose:
+    """Where a foot stands.
+
+    Attributes:
+        position: of the middle of the sole in the world [m].
+        yaw: heading [rad].
+    """
+
+    position: Float[np.ndarray, " 3"]
+    yaw: float
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """One step.
+
+    Attributes:
+        foot: that moves, "LF" or "RF".
+        yaw: heading with which it lands [rad].
+        candidates: names of the surfaces it may land on.
+        root: of the guide path, in the world [m], where there is one.
+    """
+
+    foot: str
+    yaw: float
+    candidates: tuple[str, ...]
+    root: Float[np.ndarray, " 3"] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """Find a foothold for each phase.
+
+    Attributes:
+        robot: its name.
+        model: "feet" (relative foot polytopes only) or "two_com" (T app. B: two positions of the
+            centre of mass a phase besides).
+        surfaces: by name.
+        initial: where each foot stands before the first phase.
+        phases: in order; the last one's candidates are the goal.
+        polytopes: how far a step and the centre of mass reach.
+        foot_half_size: half length and half width of the sole [m].
+    """
+
+    robot: str
+    model: Model
+    surfaces: dict[str, ContactSurface]
+    initial: dict[str, FootPose]
+    phases: tuple[Phase, ...]
+    polytopes: StepPolytopes
+    foot_half_size: tuple[float, float]
+
+    def __len__(self) -> int:
+        """Return the number of phases."""
+        return len(self.phases)
+
+    def prefix(self, count: int) -> "ContactProblem":
+        """Return the problem of the first `count` phases."""
+        return replace(self, phases=self.phases[:count])
+
+    def with_candidates(self, candidates: "list[tuple[str, ...]]") -> "ContactProblem":
+        """Return the problem with other candidates, one tuple a phase."""
+        phases = zip(self.phases, candidates, strict=True)
+        return replace(
+            self, phases=tuple(replace(phase, candidates=names) for phase, names in phases)
+        )
+
+    def without_guide(self) -> "ContactProblem":
+        """Return the contact-before-motion problem: any surface for any phase but the last.
+
+        Orientations stay those of the phases; the last phase keeps its candidates, the goal.
+        """
+        every = tuple(self.surfaces)
+        free = [every] * (len(self) - 1)
+        return self.with_candidates([*free, self.phases[-1].candidates])

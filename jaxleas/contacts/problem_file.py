@@ -1,0 +1,217 @@
+"""Contact problems as files: JSON, every mistake answered with one sentence."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
+from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
+from jaxleas.contacts.surfaces import ContactSurface, make_surface
+from jaxleas.files import read_json, write_json
+from jaxleas.robots import load_robot
+from jaxleas.types.errors import InputError
+
+VERSION = 1
+NEEDED = ("robot", "model", "surfaces", "initial", "phases")
+MAX_COORDINATE = 1e6  # [m]
+MAX_PHASES = 10_000
+ON_SURFACE = 1e-3  # a foot further [m] from every surface stands on none
+
+
+def read_problem(path: str | Path) -> ContactProblem:
+    """Read a contact problem from JSON.
+
+    Raises:
+        InputError: the file, or one entry in it (named), cannot be used.
+    """
+    return parse_problem(str(path), read_json(path))
+
+
+def parse_problem(where: str, content: Any) -> ContactProblem:
+    """Return the problem in a parsed JSON object.
+
+    Args:
+        where: names the file, for messages.
+        content: of the file.
+
+    Raises:
+        InputError: an entry (named) cannot be used.
+    """
+    if not isinstance(content, dict):
+        raise InputError(f"{where} is not a contact problem: it must be a JSON object")
+    missing = [key for key in NEEDED if key not in content]
+    if missing:
+        raise InputError(f"{where} is not a contact problem: it lacks {', '.join(missing)}")
+    if content.get("version", VERSION) != VERSION:
+        raise InputError(f"{where} has version {content['version']!r}; this package reads 1")
+    model = content["model"]
+    if model not in ("two_com", "feet"):
+        raise InputError(f"{where}: model must be 'two_com' or 'feet', not {model!r:.60}")
+    surfaces = _surfaces(where, content["surfaces"])
+    problem = ContactProblem(
+        robot=str(content["robot"]),
+        model=model,
+        surfaces=surfaces,
+        initial=_initial(where, content["initial"]),
+        phases=_phases(where, content["phases"], surfaces),
+        polytopes=_polytopes(where, content, model),
+        foot_half_size=_foot_half_size(where, content),
+    )
+    require_feet_on_surfaces(problem, where)
+    return problem
+
+
+def write_problem(path: str | Path, problem: ContactProblem) -> None:
+    """Write a problem as JSON, whole or not at all."""
+    polytopes = problem.polytopes
+    named = {f"{'RF' if foot == 'LF' else 'LF'}_in_{foot}": p for foot, p in polytopes.foot.items()}
+    named |= {f"COM_in_{foot}": p for foot, p in polytopes.com.items()}
+    write_json(
+        path,
+        {
+            "version": VERSION,
+            "robot": problem.robot,
+            "model": problem.model,
+            "surfaces": {name: each.vertices.tolist() for name, each in problem.surfaces.items()},
+            "initial": {
+                foot: {"position": pose.position.tolist(), "yaw": pose.yaw}
+                for foot, pose in problem.initial.items()
+            },
+            "phases": [
+                {
+                    "foot": phase.foot,
+                    "yaw": phase.yaw,
+                    "candidates": list(phase.candidates),
+                    "root": None if phase.root is None else phase.root.tolist(),
+                }
+                for phase in problem.phases
+            ],
+            "polytopes": {
+                name: {"A": each.normals.tolist(), "b": each.offsets.tolist()}
+                for name, each in named.items()
+            },
+            "foot_half_size": list(problem.foot_half_size),
+        },
+    )
+
+
+def require_feet_on_surfaces(problem: ContactProblem, where: str) -> None:
+    """Refuse initial feet that stand on no surface of the problem.
+
+    Raises:
+        InputError: says which foot, and how far the nearest surface is.
+    """
+    for foot, pose in problem.initial.items():
+        gaps = {
+            name: float(each.distance(pose.position)) for name, each in problem.surfaces.items()
+        }
+        nearest = min(gaps, key=lambda name: gaps[name])
+        if gaps[nearest] > ON_SURFACE:
+            x, y, z = pose.position
+            raise InputError(
+                f"{where}: initial {foot} at ({x:g}, {y:g}, {z:g}) stands on no surface; the"
+                f" nearest, '{nearest}', is {gaps[nearest]:.3g} m away"
+            )
+
+
+def _surfaces(where: str, content: Any) -> dict[str, ContactSurface]:
+    if not isinstance(content, dict) or not content:
+        raise InputError(f"{where}: surfaces must be a non-empty object of name: [[x, y, z], ...]")
+    return {name: _surface(f"{where}: surface '{name}'", each) for name, each in content.items()}
+
+
+def _surface(where: str, content: Any) -> ContactSurface:
+    if not isinstance(content, list):
+        raise InputError(f"{where} must be a list of vertices [x, y, z]")
+    return make_surface(np.array([_vector(where, each) for each in content]).reshape(-1, 3), where)
+
+
+def _initial(where: str, content: Any) -> dict[str, FootPose]:
+    if not isinstance(content, dict) or content.keys() != set(FEET):
+        raise InputError(f"{where}: initial must say where LF and RF stand, and no other foot")
+    poses = {}
+    for foot in FEET:
+        here, pose = f"{where}: initial {foot}", content[foot]
+        if not isinstance(pose, dict) or not {"position", "yaw"} <= pose.keys():
+            raise InputError(f"{here} must be an object with position and yaw")
+        position = _vector(f"{here}: position", pose["position"])
+        poses[foot] = FootPose(position, _yaw(here, pose["yaw"]))
+    return poses
+
+
+def _phases(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> tuple[Phase, ...]:
+    if not isinstance(content, list) or not content:
+        raise InputError(f"{where}: phases must be a list of at least one phase")
+    if len(content) > MAX_PHASES:
+        raise InputError(f"{where} has {len(content)} phases, more than {MAX_PHASES}")
+    return tuple(
+        _phase(f"{where}: phase {index}", each, surfaces) for index, each in enumerate(content)
+    )
+
+
+def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Phase:
+    if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
+        raise InputError(f"{where} must be an object with foot, yaw and candidates")
+    if content["foot"] not in FEET:
+        raise InputError(f"{where}: foot must be 'LF' or 'RF', not {content['foot']!r:.60}")
+    names = content["candidates"]
+    if not isinstance(names, list) or not names:
+        raise InputError(f"{where} has no candidate surfaces: the foot could land nowhere")
+    for name in names:
+        if not isinstance(name, str) or name not in surfaces:
+            raise InputError(f"{where}: candidate {name!r:.60} is no surface of this problem")
+    root = content.get("root")
+    return Phase(
+        foot=content["foot"],
+        yaw=_yaw(where, content["yaw"]),
+        candidates=tuple(dict.fromkeys(names)),
+        root=None if root is None else _vector(f"{where}: root", root),
+    )
+
+
+def _polytopes(where: str, content: dict[str, Any], model: str) -> StepPolytopes:
+    given = content.get("polytopes")
+    if given is None:
+        return load_step_polytopes(str(content["robot"]))
+    return read_polytopes(f"{where}: polytopes", given, model)
+
+
+def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
+    given = content.get("foot_half_size")
+    if given is None:
+        return load_robot(str(content["robot"])).foot_half_size
+    if not isinstance(given, list) or len(given) != 2 or not all(_is_number(x) for x in given):
+        raise InputError(f"{where}: foot_half_size must be two numbers [m], not {given!r:.60}")
+    if not all(0.0 < x < 1.0 for x in given):
+        raise InputError(f"{where}: foot_half_size {given} is not between 0 and 1 m")
+    return float(given[0]), float(given[1])
+
+
+def _vector(where: str, content: Any) -> np.ndarray:
+    if (
+        not isinstance(content, list)
+        or len(content) != 3
+        or any(isinstance(x, bool) or not isinstance(x, int | float) for x in content)
+    ):
+        raise InputError(f"{where} must be three numbers [x, y, z] in metres, not {content!r:.60}")
+    if not all(abs(x) < MAX_COORDINATE for x in content):
+        raise InputError(f"{where} {content!r:.60} is not finite, or beyond 1000 km")
+    return np.array(content, dtype=np.float64)
+
+
+def _yaw(where: str, content: Any) -> float:
+    if not _is_number(content):
+        raise InputError(
+            f"{where}: yaw must be one finite number of radians, not {content!r:.60}; rotations"
+            " are about the vertical only"
+        )
+    if abs(content) > 2 * math.pi:
+        raise InputError(f"{where}: yaw {content:g} is beyond a full turn; give radians")
+    return float(content)
+
+
+def _is_number(content: Any) -> bool:
+    is_number = isinstance(content, int | float) and not isinstance(content, bool)
+    return is_number and math.isfinite(content)

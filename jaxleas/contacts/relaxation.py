@@ -1,0 +1,85 @@
+"""SL1M's relaxation (T eq. 5.9, 5.10): how far each foothold is from each candidate, in metres."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.linear_program import Outcome, Program, Rows, solve
+from jaxleas.contacts.mixed_integer import Candidates, add_step
+from jaxleas.contacts.placement import put_com
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.steps import Step
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxed:
+    """The answer of the relaxation.
+
+    Attributes:
+        outcome: "infeasible" proves that there is no plan.
+        steps: as given, with the cuts that were found on the way.
+        footholds: of each phase [m].
+        slack: alpha of each candidate of each phase [m]: its distance, and 0 on the surface.
+    """
+
+    outcome: Outcome
+    steps: list[Step]
+    footholds: Float[np.ndarray, "n 3"] | None = None
+    slack: tuple[Float[np.ndarray, " c"], ...] = ()
+
+
+def relax(
+    problem: ContactProblem, steps: list[Step], candidates: Candidates, deadline: float = np.inf
+) -> Relaxed:
+    """Minimise the sum of all slacks over footholds that the steps allow.
+
+    min sum_kj a_kj  s.t.  S_j p_k <= s_j + a_kj,  |d_j . p_k - e_j| <= a_kj,  a >= 0, and steps.
+    Rows have unit normals and there is no big-M, so that a slack is a distance in metres. Where
+    the footholds leave no place for the centre of mass, cuts are returned, but the program is not
+    solved again: `place` keeps every constraint, and a second solution decided no more.
+
+    Args:
+        problem: the contact problem.
+        steps: of its phases, with cuts.
+        candidates: of each phase; a single one is a hard constraint.
+        deadline: of `time.perf_counter` [s].
+    """
+    program, starts = _assemble(problem, steps, candidates)
+    solution = solve(program, deadline - time.perf_counter())
+    if solution.outcome != "optimal":
+        return Relaxed(solution.outcome, steps)
+    footholds = solution.x[starts[:-1, None] + np.arange(3)]
+    _, steps, _ = put_com(problem, steps, footholds)
+    slack = tuple(
+        np.array([problem.surfaces[name].distance(point) for name in names])
+        for names, point in zip(candidates, footholds, strict=True)
+    )
+    return Relaxed("optimal", steps, footholds, slack)
+
+
+def _assemble(
+    problem: ContactProblem, steps: list[Step], candidates: Candidates
+) -> tuple[Program, np.ndarray]:
+    slacks = [len(names) if len(names) > 1 else 0 for names in candidates]
+    starts = np.cumsum([0, *(3 + each for each in slacks)])
+    total = int(starts[-1])
+    rows, cost = Rows(total), np.zeros(total)
+    low = np.full(total, -np.inf)
+    for index, (step, names) in enumerate(zip(steps, candidates, strict=True)):
+        begin = int(starts[index])
+        alpha = begin + 3 + np.arange(slacks[index])
+        cost[alpha], low[alpha] = 1.0, 0.0
+        for number, name in enumerate(names):
+            surface = problem.surfaces[name]
+            A = np.concatenate([surface.edge_normals, surface.normal[None], -surface.normal[None]])
+            b = np.concatenate([surface.edge_offsets, [surface.offset, -surface.offset]])
+            blocks = [(begin + np.arange(3), A)]
+            if len(alpha):
+                blocks.append((alpha[number : number + 1], -np.ones((len(b), 1))))
+            rows.add(blocks, b)
+        add_step(problem, step, rows, begin, starts)
+    row_low, row_high = rows.bounds()
+    high = np.full(total, np.inf)
+    return Program(cost, low, high, rows.matrix(), row_low, row_high), starts

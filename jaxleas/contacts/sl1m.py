@@ -1,0 +1,134 @@
+"""SL1M (T 5.3): relax, keep what the L1 norm decided, enumerate the rest by cost."""
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.com import with_first_cuts
+from jaxleas.contacts.linear_program import Outcome
+from jaxleas.contacts.mixed_integer import Candidates
+from jaxleas.contacts.placement import Placement, place
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.pruning import prune
+from jaxleas.contacts.relaxation import Relaxed, relax
+from jaxleas.contacts.steps import Step, make_steps
+
+DECIDED = 1e-6
+"""A foothold this near to a surface [m] has selected it (the LP is solved to 1e-9)."""
+MAX_COMBINATIONS = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """How far SL1M came.
+
+    Attributes:
+        outcome: "optimal" for a plan; "infeasible" if the relaxation already is; else "not_found".
+        steps: with the cuts found on the way.
+        surfaces: of each phase.
+        placement: footholds and com.
+        undecided: phases that the relaxation left without a surface.
+        combinations: tried.
+        exhausted: whether every combination was tried.
+        relaxed: the relaxation's answer.
+    """
+
+    outcome: Outcome | str
+    steps: list[Step]
+    surfaces: tuple[str, ...] = ()
+    placement: Placement | None = None
+    undecided: int | None = None
+    combinations: int = 0
+    exhausted: bool = False
+    relaxed: Relaxed | None = None
+
+
+def attempt(
+    problem: ContactProblem,
+    deadline: float = np.inf,
+    max_combinations: int = MAX_COMBINATIONS,
+    pruning: bool = True,
+) -> Attempt:
+    """Look for a plan by SL1M.
+
+    Args:
+        problem: the contact problem.
+        deadline: of `time.perf_counter` [s].
+        max_combinations: after which it gives up.
+        pruning: whether candidates that no step can reach are dropped first.
+    """
+    steps = with_first_cuts(problem, make_steps(problem), len(problem))
+    candidates: Candidates = [phase.candidates for phase in problem.phases]
+    if pruning:
+        candidates = prune(problem, steps)
+        if not all(candidates):
+            return Attempt("infeasible", steps)
+    return search(problem, steps, candidates, deadline, max_combinations)
+
+
+def search(
+    problem: ContactProblem,
+    steps: list[Step],
+    candidates: Candidates,
+    deadline: float,
+    max_combinations: int,
+) -> Attempt:
+    """Relax, keep what is decided, enumerate the rest.
+
+    Args:
+        problem: the contact problem.
+        steps: of its phases, with cuts.
+        candidates: of each phase, at least one each.
+        deadline: of `time.perf_counter` [s].
+        max_combinations: after which it gives up.
+    """
+    relaxed = relax(problem, steps, candidates, deadline)
+    if relaxed.outcome != "optimal":
+        return Attempt(relaxed.outcome, steps=relaxed.steps, relaxed=relaxed)
+    steps = relaxed.steps
+    undecided = sum(float(slack.min()) > DECIDED for slack in relaxed.slack)
+    tried, outcome, exhausted = 0, "not_found", True
+    for surfaces in _by_cost(candidates, relaxed.slack):
+        if tried == max_combinations:
+            exhausted = False
+            break
+        tried += 1
+        placement = place(problem, steps, surfaces, deadline)
+        steps = placement.steps
+        if placement.outcome == "optimal":
+            return Attempt("optimal", steps, surfaces, placement, undecided, tried, False, relaxed)
+        if placement.outcome == "time_limit":
+            outcome, exhausted = "time_limit", False
+            break
+    return Attempt(outcome, steps, (), None, undecided, tried, exhausted, relaxed)
+
+
+def _by_cost(
+    candidates: Candidates, slack: tuple[Float[np.ndarray, " c"], ...]
+) -> Iterator[tuple[str, ...]]:
+    """Yield combinations, cheapest sum of slacks first; decided phases stay as they are."""
+    options = []
+    for names, distances in zip(candidates, slack, strict=True):
+        order = np.argsort(distances, kind="stable")
+        decided = distances[order[0]] <= DECIDED
+        options.append([(float(distances[i]), names[i]) for i in order[: 1 if decided else None]])
+    free = [index for index, each in enumerate(options) if len(each) > 1]
+    start: tuple[int, ...] = tuple(0 for _ in free)
+    heap: list[tuple[float, tuple[int, ...]]] = [
+        (sum(options[index][0][0] for index in free), start)
+    ]
+    seen = {start}
+    while heap:
+        cost, ranks = heapq.heappop(heap)
+        chosen = dict(zip(free, ranks, strict=True))
+        yield tuple(each[chosen.get(index, 0)][1] for index, each in enumerate(options))
+        for position, index in enumerate(free):
+            rank = ranks[position] + 1
+            following = (*ranks[:position], rank, *ranks[position + 1 :])
+            if rank < len(options[index]) and following not in seen:
+                seen.add(following)
+                more = options[index][rank][0] - options[index][rank - 1][0]
+                heapq.heappush(heap, (cost + more, following))

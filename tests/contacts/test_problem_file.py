@@ -1,0 +1,108 @@
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from jaxleas.contacts.problem_file import parse_problem, read_problem, write_problem
+from jaxleas.files import write_json
+from jaxleas.types.errors import InputError
+from tests.contacts.worlds import problem, rectangle, stones
+
+
+def change(described: dict, path: list, value) -> dict:
+    changed = copy.deepcopy(described)
+    here = changed
+    for key in path[:-1]:
+        here = here[key]
+    if value is KeyError:
+        del here[path[-1]]
+    else:
+        here[path[-1]] = value
+    return changed
+
+
+BENT = [[0, 0, 0], [1, 0, 0], [1, 1, 0.2], [0, 1, 0]]
+DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        (["surfaces", "stone_1"], BENT, ["'stone_1' is not planar", "0.04951 m off"]),
+        (["surfaces", "stone_1"], DART, ["'stone_1' is not convex", "m outside an edge"]),
+        (["surfaces", "stone_1"], [[0, 0, 0], [1, 0, 0]], ["'stone_1' has 2 vertices"]),
+        (["surfaces", "stone_1", 0, 2], math.nan, ["'stone_1'", "not finite"]),
+        (["surfaces", "stone_1", 0, 2], "high", ["'stone_1'", "three numbers"]),
+        (["surfaces"], {}, ["surfaces must be a non-empty object"]),
+        (["phases", 1, "candidates"], ["start", "moon"], ["phase 1", "'moon' is no surface"]),
+        (["phases", 2, "candidates"], [], ["phase 2 has no candidate surfaces"]),
+        (["phases", 2, "foot"], "left", ["phase 2", "must be 'LF' or 'RF'", "'left'"]),
+        (["phases", 2, "yaw"], 90.0, ["phase 2", "yaw 90 is beyond a full turn", "radians"]),
+        (["phases", 2, "yaw"], [[1, 0], [0, 1]], ["phase 2", "one finite number of radians"]),
+        (["phases", 2, "yaw"], math.nan, ["phase 2", "one finite number of radians"]),
+        (["phases", 2, "yaw"], KeyError, ["phase 2", "foot, yaw and candidates"]),
+        (["phases", 0, "root"], [0, 1], ["phase 0: root must be three numbers"]),
+        (["phases"], [], ["at least one phase"]),
+        (["initial", "LF", "position", 2], 0.1, ["initial LF", "'start', is 0.1 m away"]),
+        (["initial", "RF"], KeyError, ["where LF and RF stand"]),
+        (["model"], "com", ["model must be 'two_com' or 'feet'", "'com'"]),
+        (["polytopes", "COM_in_LF"], KeyError, ["polytopes lacks COM_in_LF"]),
+        (["polytopes", "RF_in_LF", "b"], [1.0], ["RF_in_LF: A has shape (6, 3) and b (1,)"]),
+        (["polytopes", "RF_in_LF", "b"], [-1.0] * 6, ["RF_in_LF bounds no volume"]),
+        (["polytopes", "RF_in_LF", "A", 0], [0, 0, 0], ["RF_in_LF: A has a row of zeros"]),
+        (["foot_half_size"], [10, 6], ["foot_half_size", "not between 0 and 1 m"]),
+        (["version"], 2, ["has version 2"]),
+        (["phases"], KeyError, ["lacks phases"]),
+    ],
+)
+def test_a_mistake_is_one_sentence_that_names_it(path: list, value, words: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_problem("p.json", change(stones(0.1), path, value))
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).startswith("p.json")
+    assert all(word in str(caught.value) for word in words), caught.value
+
+
+def test_polytopes_may_be_left_out_for_a_known_robot_only() -> None:
+    described = stones(0.1)
+    del described["polytopes"]
+    read = parse_problem("p.json", described)
+    assert set(read.polytopes.com) == {"LF", "RF"}
+    with pytest.raises(InputError, match="no step polytopes for robot 'spot'"):
+        parse_problem("p.json", {**described, "robot": "spot"})
+
+
+def test_a_problem_survives_its_file(tmp_path) -> None:
+    before = problem(stones(0.1, rise=0.05))
+    write_problem(tmp_path / "p.json", before)
+    after = read_problem(tmp_path / "p.json")
+    assert list(after.surfaces) == list(before.surfaces)
+    for name, surface in before.surfaces.items():
+        np.testing.assert_allclose(after.surfaces[name].vertices, surface.vertices, atol=1e-12)
+    assert [(p.foot, p.yaw, p.candidates) for p in after.phases] == [
+        (p.foot, p.yaw, p.candidates) for p in before.phases
+    ]
+    for foot in ("LF", "RF"):
+        for group in ("foot", "com"):
+            one, two = getattr(before.polytopes, group)[foot], getattr(after.polytopes, group)[foot]
+            np.testing.assert_allclose(one.normals, two.normals, atol=1e-12)
+            np.testing.assert_allclose(one.offsets, two.offsets, atol=1e-12)
+
+
+def test_a_file_that_is_no_problem(tmp_path) -> None:
+    write_json(tmp_path / "list.json", [1, 2])
+    with pytest.raises(InputError, match="must be a JSON object"):
+        read_problem(tmp_path / "list.json")
+
+
+def test_either_winding_and_a_needless_corner_are_the_same_surface() -> None:
+    square = rectangle(0.2, 0.4, -0.3, 0.3)
+    listed = {"wound back": square[::-1], "with a needless corner": [*square, [0.2, 0.0, 0.0]]}
+    for vertices in listed.values():
+        described = stones(0.1)
+        described["surfaces"]["stone_0"] = vertices
+        surface = problem(described).surfaces["stone_0"]
+        assert len(surface.vertices) == 4
+        np.testing.assert_allclose(surface.normal, [0, 0, 1])
+        np.testing.assert_allclose(surface.edge_normals @ [0.3, 0.0, 0.0] < surface.edge_offsets, 1)
