@@ -80,7 +80,8 @@ def test_steps_equal_the_slow_twin(observation):
         np.testing.assert_allclose(state.motion.position[0], twin[0], atol=1e-5)
         np.testing.assert_allclose(state.motion.velocity[0], twin[1], atol=1e-6)
         valid = not bool(outcome.terminated[0])
-        assert outcome.reward[0] == pytest.approx(reward + valid * 1.0, abs=1e-5)
+        alive = valid * env.config.reward.alive
+        assert outcome.reward[0] == pytest.approx(reward + alive, abs=1e-5)
         np.testing.assert_allclose(outcome.observation[0, :4], observed[:4], atol=1e-5)
         # A grid point within rounding of a cell's border may read the neighbouring cell.
         unequal += np.sum(np.abs(outcome.observation[0, 4:] - observed[4:]) > 1e-4)

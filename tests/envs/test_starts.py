@@ -33,7 +33,8 @@ def test_every_start_is_valid_and_its_goal_can_be_stood_at(env, arena_world):
     heights = env.local_heights(arena_world.atlas, state.plan.map_index, state.motion)
     assert np.all(env.condition(heights, state.motion) >= 0.0)
     np.testing.assert_array_equal(observation, env.observe(heights, state.motion, env.goal(state)))
-    goal_ground = arena_world.atlas.height_at(state.plan.map_index, env.goal(state)[:, None])
+    first_goal = state.plan.goals[:, 0]
+    goal_ground = arena_world.atlas.height_at(state.plan.map_index, first_goal[:, None])
     assert np.all(goal_ground > -100.0)
 
 
@@ -43,7 +44,7 @@ def test_starts_lie_in_start_areas_and_goals_in_goal_areas(env):
     link = state.plan.map_index
     for place, area in (
         (state.motion.position[:, :2], world.start_area[link]),
-        (env.goal(state), world.goal_area[link]),
+        (state.plan.goals[:, 0], world.goal_area[link]),
     ):
         assert np.all((place >= area[:, 0::2]) & (place <= area[:, 1::2]))
     assert len(np.unique(link)) == 2
@@ -129,14 +130,27 @@ def test_dead_ends_have_starts_though_nobody_can_arrive(env):
 
 
 def test_half_of_the_starts_are_near_and_a_fifth_wander(env):
-    arenas = [generate_arena(GeneratorConfig(rows=4, columns=4), seed) for seed in range(3)]
-    world = make_world(arenas, 0.04, dict.fromkeys(KINDS, 0.0) | {"bridge": 1.0})
-    pool = draw_starts(env, world, jax.random.key(0), 2048)
-    state, _ = take(pool, jax.random.key(1), 2000)
-    places = np.asarray(state.motion.position[:, None, :2])
-    near = np.asarray(world.near_area)
-    inside = np.all((places >= near[:, 0::2]) & (places <= near[:, 1::2]), axis=-1).any(axis=1)
-    # Half by choice, and 40 % of the others since the strip is 0.8 m of the tile's 2 m; a start
-    # tile with several bridges has several strips.
-    assert 0.65 < inside.mean() < 0.9
-    assert 0.15 < np.mean(np.asarray(state.goal_index) == 1) < 0.25
+    world = world_of(height_map(flat))
+    x_min, x_max, y_min, y_max = np.asarray(world.start_area)[0]
+    strip = x_max - 0.25 * (x_max - x_min)
+    world = world.replace(near_area=jnp.array([[strip, x_max, y_min, y_max]]))
+    pool = draw_starts(env, world, jax.random.key(0), 4096)
+    state, _ = take(pool, jax.random.key(1), 4000)
+    inside = np.asarray(state.motion.position[:, 0]) >= strip
+    # Half by choice, and a quarter of the others by chance.
+    assert inside.mean() == pytest.approx(0.5 + 0.5 * 0.25, abs=0.04)
+    assert np.mean(np.asarray(state.goal_index) == 1) == pytest.approx(0.2, abs=0.03)
+
+
+def test_the_near_strip_lies_before_what_is_to_be_crossed():
+    arena = generate_arena(GeneratorConfig(rows=3, columns=3), 0)
+    world = make_world([arena], 0.04)
+    for link, near in zip(arena.links, np.asarray(world.near_area), strict=True):
+        start, goal = np.array(link.start_area), np.array(link.goal_area)
+        middle = np.array([near[:2].mean(), near[2:].mean()])
+        ahead = np.array(link.direction)
+        start_middle = np.array([start[:2].mean(), start[2:].mean()])
+        goal_middle = np.array([goal[:2].mean(), goal[2:].mean()])
+        assert 0.5 < (middle - start_middle) @ ahead < (goal_middle - start_middle) @ ahead
+        depth = abs(ahead) @ np.array([near[1] - near[0], near[3] - near[2]])
+        assert depth == pytest.approx(0.8, abs=1e-5)

@@ -199,6 +199,6 @@ def test_recorded_observations_are_what_a_walking_robot_sees():
     assert np.abs(walked[:, 3]).max() <= np.pi + 1e-6
     assert walked[:, 4:].min() >= -1.4
     assert walked[:, 4:].max() <= -0.2
-    assert np.unique(walked.round(4), axis=0).shape[0] > 0.9 * len(walked)
+    assert np.unique(walked.round(4), axis=0).shape[0] >= LEAST_OBSERVATIONS  # distinct ones
     again = record_observations(policy, env, world, key, robots=64, steps=100)
     np.testing.assert_array_equal(recorded, again)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-LAYOUT_ROWS = [-0.51, -0.34, -0.17, 0.15, 0.30, 0.45, 0.60, 0.75, 0.90, 1.05]
+LAYOUT_ROWS = [-0.425, -0.255, -0.085, 0.075, 0.225, 0.375, 0.525, 0.675, 0.825, 0.975]
 LAYOUT_COLUMNS = [0.09 * (index - 6.5) for index in range(14)]
 TRUNK_X = np.linspace(-0.2, 0.133, 4)
 TRUNK_Y = np.linspace(-0.3, 0.3, 7)
