@@ -6,6 +6,7 @@ from jaxtyping import Float
 from jaxleas.dynamics.equilibrium_lp import robustness_by_linear_program
 from jaxleas.dynamics.friction import friction_generators, margin_of_generator
 from jaxleas.dynamics.small_lp import maximise
+from jaxleas.dynamics.vectors import cross
 from jaxleas.types.errors import InputError
 
 GRAVITY = 9.81  # [m/s^2]
@@ -66,7 +67,7 @@ def contact_wrenches(
     """Return the wrench of each generator about the centre of mass: force over torque."""
     forces = friction_generators(normals, friction)
     arms = (points - com[:, None])[:, :, None]
-    torques = np.cross(np.broadcast_to(arms, forces.shape), forces)
+    torques = cross(arms, forces)
     count = len(points)
     wrenches = np.concatenate([forces.reshape(count, -1, 3), torques.reshape(count, -1, 3)], axis=2)
     return wrenches.transpose(0, 2, 1)
@@ -128,9 +129,9 @@ def _frames_along(direction: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, "N 3
     length = np.linalg.norm(direction, axis=1, keepdims=True)
     first = np.where(length > 1e-9, direction / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
     helper = np.eye(3)[np.abs(first).argmin(axis=1)]
-    second = np.cross(first, helper)
+    second = cross(first, helper)
     second /= np.linalg.norm(second, axis=1, keepdims=True)
-    return np.stack([first, second, np.cross(first, second)], axis=1)
+    return np.stack([first, second, cross(first, second)], axis=1)
 
 
 def _require(

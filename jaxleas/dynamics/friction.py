@@ -3,6 +3,8 @@
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.dynamics.vectors import cross
+
 GENERATORS = 4
 _ANGLES = np.pi / 4 + np.arange(GENERATORS) * np.pi / 2
 
@@ -29,7 +31,7 @@ def friction_generators(
         across = np.where(degenerate[..., None], other, across)
         length = np.where(degenerate, np.sqrt(y * y + z * z), length)
     first = across / length[..., None]
-    second = np.cross(normals, first)
+    second = cross(normals, first)
     tangent = (
         np.cos(_ANGLES)[:, None] * first[..., None, :]
         + np.sin(_ANGLES)[:, None] * second[..., None, :]

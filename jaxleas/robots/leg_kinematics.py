@@ -72,7 +72,8 @@ def leg_angles(
     ankle = sole + legs.sole * rotation[..., :, 2]
     to_hip = legs.hip - ankle
     # The hip as seen by the foot.
-    x, y, z = np.moveaxis((rotation * to_hip[..., :, None]).sum(axis=-2), -1, 0)
+    seen = (to_hip[..., None, :] @ rotation)[..., 0, :]
+    x, y, z = seen[..., 0], seen[..., 1], seen[..., 2]
     squared = x * x + y * y + z * z
     bend = (squared - legs.thigh**2 - legs.shank**2) / (2.0 * legs.thigh * legs.shank)
     in_reach = np.abs(bend) <= 1.0

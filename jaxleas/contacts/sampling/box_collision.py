@@ -24,6 +24,8 @@ def boxes_meet_ground(
         half_sizes: along these axes [m].
         ground: the polygons.
     """
+    if not len(centres):
+        return np.zeros(0, dtype=bool)
     reach = (np.abs(rotations) @ half_sizes[:, :, None])[:, :, 0]
     low, high = centres - reach, centres + reach
     near = np.flatnonzero(

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.contacts.sampling.heuristics import HEURISTICS, Wish
-from jaxleas.contacts.sampling.limbs import SIDES, Roots, to_world
+from jaxleas.contacts.sampling.limbs import SIDES, Roots, to_left_root
 from jaxleas.contacts.sampling.world import World
 
 
@@ -64,46 +64,79 @@ class Candidates:
 
 
 def near_candidates(world: World, aim: Aim) -> Candidates:
-    """Return every sample near a surface, each row's best score first.
+    """Return the samples near a surface, each row's best scores first.
 
     The samples lie in order of height: a surface's interval of heights below the root picks a
-    slice, of which the plane and the edges then choose.
+    slice, of which the plane and the edges then choose. At most as many a row as are ever tried.
 
     Args:
         world: robot, scene, settings.
         aim: one row a robot.
     """
-    row, sample, surface = _slices(world, aim.roots)
-    database, ground = world.database, world.ground
-    yaw, side = aim.roots.yaw[row], SIDES[aim.limb[row]]
-    soles = to_world(database.soles[sample], yaw, side) + aim.roots.position[row]
-    distance = (ground.normals[surface] * soles).sum(axis=1) - ground.offsets[surface]
-    near = np.flatnonzero(np.abs(distance) <= world.settings.contact_distance)
-    near = near[ground.inside(soles[near], surface[near])]
-    row, sample, surface = row[near], sample[near], surface[near]
-    wish = Wish(sample, aim.target[row], aim.direction[row], ground.normals[surface])
-    score = HEURISTICS[world.settings.heuristic](database, wish)
-    order = np.lexsort((-score, row))
-    row, sample, surface = row[order], sample[order], surface[order]
-    first = np.searchsorted(row, np.arange(len(aim)))
-    return Candidates(row, np.arange(len(row)) - first[row], sample, surface)
+    row, sample, surface = _near_pairs(world, aim)
+    wish = Wish(sample, aim.target[row], aim.direction[row], world.ground.normals[surface])
+    score = HEURISTICS[world.settings.heuristic](world.database, wish)
+    bounds = np.searchsorted(row, np.arange(len(aim) + 1))
+    orders, ranks = [], []
+    for first, last in zip(bounds[:-1], bounds[1:], strict=True):
+        order = np.argsort(-score[first:last], kind="stable")[: sum(world.settings.stages)]
+        orders.append(order + first)
+        ranks.append(np.arange(len(order)))
+    order = np.concatenate(orders)
+    return Candidates(row[order], np.concatenate(ranks), sample[order], surface[order])
 
 
-def _slices(world: World, roots: Roots) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (row, sample, surface) of all samples in the heights of all surfaces near a root."""
+def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (row, sample, surface) of all samples within reach of a surface, row after row.
+
+    A slice of samples times a few half-spaces, one surface at a time: gathering the samples of all
+    surfaces into one array costs more than this loop.
+    """
     ground, database = world.ground, world.database
     count, gap = ground.walkable, world.settings.contact_distance
+    position = aim.roots.position
     reach = database.reach + gap
-    x, y = roots.position[:, 0, None], roots.position[:, 1, None]
+    x, y = position[:, 0, None], position[:, 1, None]
     near = (ground.low[:count, 0] <= x + reach) & (ground.high[:count, 0] >= x - reach)
     near &= (ground.low[:count, 1] <= y + reach) & (ground.high[:count, 1] >= y - reach)
     row, surface = np.nonzero(near)
-    height = roots.position[row, 2]
-    heights = database.soles[:, 2]
-    first = np.searchsorted(heights, ground.low[surface, 2] - height - gap)
-    last = np.searchsorted(heights, ground.high[surface, 2] - height + gap)
-    length = np.maximum(last - first, 0)
-    end = np.cumsum(length)
-    which = np.repeat(np.arange(len(row)), length)
-    sample = np.arange(end[-1] if len(end) else 0) - (end - length)[which] + first[which]
-    return row[which], sample, surface[which]
+    first = np.searchsorted(
+        database.heights, ground.low[surface, 2] - position[row, 2] - gap
+    ).tolist()
+    last = np.searchsorted(
+        database.heights, ground.high[surface, 2] - position[row, 2] + gap
+    ).tolist()
+    halfspaces = _halfspaces(world, aim, row, surface)
+    found = [
+        first[pair]
+        + np.flatnonzero(
+            (halfspaces[pair] @ database.homogeneous[:, first[pair] : last[pair]] >= 0.0).all(axis=0)
+        )
+        for pair in range(len(row))
+    ]
+    length = [len(each) for each in found]
+    sample = np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
+    return np.repeat(row, length), sample, np.repeat(surface, length)
+
+
+def _halfspaces(
+    world: World, aim: Aim, row: np.ndarray, surface: np.ndarray
+) -> Float[np.ndarray, "pairs H 4"]:
+    """Return, for left-leg soles in the root frame, rows (a, c): near where a . x + c >= 0.
+
+    Two sides of the plane at the contact distance, then the edges.
+    """
+    ground, gap = world.ground, world.settings.contact_distance
+    roots, side = aim.roots[row], SIDES[aim.limb[row]]
+    normals = np.concatenate(
+        [ground.normals[surface, None], -ground.normals[surface, None], ground.inward[surface]],
+        axis=1,
+    )
+    offsets = ground.offsets[surface, None]
+    least = np.concatenate([offsets - gap, -offsets - gap, ground.inward_offsets[surface]], axis=1)
+    constant = (normals @ roots.position[:, :, None])[:, :, 0] - least
+    faces = normals.shape[1]
+    turned = to_left_root(
+        normals.reshape(-1, 3), np.repeat(roots.yaw, faces), np.repeat(side, faces)
+    )
+    return np.concatenate([turned.reshape(normals.shape), constant[:, :, None]], axis=2)

@@ -100,7 +100,7 @@ def create_contacts(
     candidates = near_candidates(world, aim)
     candidates = candidates[can_leave[candidates.row]]
     start = 0
-    for stage in (world.settings.first_candidates, world.settings.more_candidates):
+    for stage in world.settings.stages:
         chosen = (candidates.rank >= start) & (candidates.rank < start + stage)
         chosen &= ~result.found[candidates.row]
         start += stage

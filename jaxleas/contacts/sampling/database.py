@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.dynamics.vectors import cross
 from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
 from jaxleas.robots.legs import LegModel, load_talos_legs
 
@@ -25,6 +26,8 @@ class LegDatabase:
         manipulability: |det J|, as a share of the largest.
         translation: J_v J_v^T of the sole's Jacobian [m^2], for the EFORT score.
         reach: largest horizontal distance of a sole from the root [m].
+        heights: z of the soles, ascending [m].
+        homogeneous: the soles as columns (x, y, z, 1).
     """
 
     legs: LegModel
@@ -35,6 +38,8 @@ class LegDatabase:
     manipulability: Float[np.ndarray, " N"]
     translation: Float[np.ndarray, "N 3 3"]
     reach: float
+    heights: Float[np.ndarray, " N"]
+    homogeneous: Float[np.ndarray, "4 N"]
 
     def __len__(self) -> int:
         """Return the number of configurations kept."""
@@ -82,6 +87,8 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
         manipulability=manipulability / max(float(manipulability.max(initial=0.0)), 1e-12),
         translation=linear @ linear.transpose(0, 2, 1),
         reach=float(np.linalg.norm(soles[:, :2], axis=1).max(initial=0.0)),
+        heights=soles[:, 2].copy(),
+        homogeneous=np.concatenate([soles.T, np.ones((1, len(soles)))]),
     )
 
 
@@ -110,7 +117,7 @@ def sole_jacobian(
     del roll  # it is in hip_rotation
     hip = np.broadcast_to(legs.hip, posture.knee.shape)
     origins = np.stack([hip, hip, hip, posture.knee, posture.ankle, posture.ankle], axis=1)
-    linear = np.cross(axes, posture.sole[:, None] - origins)
+    linear = cross(axes, posture.sole[:, None] - origins)
     return np.concatenate([linear, axes], axis=2).transpose(0, 2, 1)
 
 
@@ -124,7 +131,7 @@ def align(
     columns = rotations.transpose(0, 2, 1)  # rows are now the columns
     third = columns[:, 2]
     cosine = (third * normals).sum(axis=1)[:, None, None]
-    v = np.cross(third, normals)[:, None]
-    once = np.cross(v, columns)
-    twice = np.cross(v, once)
+    v = cross(third, normals)[:, None]
+    once = cross(v, columns)
+    twice = cross(v, once)
     return (columns + once + twice / np.maximum(1.0 + cosine, 1e-9)).transpose(0, 2, 1)

@@ -34,7 +34,5 @@ class SamplingSettings(Strict):
     """of a whole plan"""
     moved: PositiveFloat = 0.01
     """a contact that moves by less counts as the same one [m]"""
-    first_candidates: PositiveInt = 24
-    """tried together at first"""
-    more_candidates: NonNegativeInt = 200
-    """tried together when the first have failed"""
+    stages: tuple[PositiveInt, ...] = (8, 40, 176)
+    """so many candidates are tried together, then so many more, ..."""

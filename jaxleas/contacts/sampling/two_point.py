@@ -44,6 +44,8 @@ def com_exists(
         other_rotation,
         side,
     )
+    if not len(side):
+        return np.zeros(0, dtype=bool)
     exists = _some_point_fits(normals, slack, standing_corners - standing_sole[:, None])
     open_ = np.flatnonzero(~exists)
     if len(open_):
@@ -104,7 +106,7 @@ def _some_point_fits(
     middle = corners.mean(axis=1, keepdims=True)
     places = np.concatenate([middle, 0.5 * (corners + middle)], axis=1)[:, :, None]
     points = places + _HEIGHTS[:, None] * np.array([0.0, 0.0, 1.0])
-    points = points.reshape(len(corners), -1, 3)
+    points = points.reshape(len(corners), places.shape[1] * len(_HEIGHTS), 3)
     fits = points @ normals.transpose(0, 2, 1) <= slack[:, None]
     return fits.all(axis=2).any(axis=1)
 
