@@ -32,13 +32,11 @@ class Created:
     Attributes:
         found: whether there is one; the rest of the row means nothing where not.
         stances: with the new contact in the place of the old.
-        robustness: of the new posture [N].
         com: centre of mass of the new posture in the world [m].
     """
 
     found: Bool[np.ndarray, " N"]
     stances: Stances
-    robustness: Float[np.ndarray, " N"]
     com: Float[np.ndarray, "N 3"]
 
 
@@ -94,7 +92,7 @@ def create_contacts(
         stances.sole[each, standing],
         stances.rotation[each, standing],
     )
-    result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros(count), np.zeros((count, 3)))
+    result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros((count, 3)))
     can_leave = _two_points(world, aim, stances, each, stances.sole[each, aim.limb],
                             stances.rotation[each, aim.limb])  # fmt: skip
     candidates = near_candidates(world, aim)
@@ -168,12 +166,11 @@ def _take_first_robust(
         limb = aim.limb[some.row]
         stances = with_contact(result.stances[some.row], limb, some, order[some.row])
         com = (resting[some.row] + some.moment) / world.legs.mass
-        robustness = world.robustness(stances, com)
-        good = np.flatnonzero(robustness >= world.settings.least_robustness)
+        good = np.flatnonzero(world.is_robust(stances, com))
         row, first = np.unique(some.row[good], return_index=True)
         first = good[first]
         result.found[row] = True
-        result.robustness[row], result.com[row] = robustness[first], com[first]
+        result.com[row] = com[first]
         put(result.stances, row, stances[first])
 
 

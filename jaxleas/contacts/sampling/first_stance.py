@@ -39,7 +39,7 @@ def first_stances(world: World, guides: KeptGuides) -> Created:
     stances, standing = _reference_stances(world, roots, guides.reference_sole)
     kept = maintain_contacts(world, roots, stances)
     found = standing & kept.both
-    result = Created(found, stances, kept.robustness.copy(), kept.com.copy())
+    result = Created(found, stances, kept.com.copy())
     for attempt in range(_FIRST_FEET):
         open_ = np.flatnonzero(~result.found)
         if not len(open_):
@@ -122,6 +122,5 @@ def _stand_otherwise(
     made = create_contacts(world, aim, replace(stances), np.ones(len(good), dtype=np.int64))
     found = np.flatnonzero(made.found)
     result.found[guide[found]] = True
-    result.robustness[guide[found]] = made.robustness[found]
     result.com[guide[found]] = made.com[found]
     put(result.stances, guide[found], made.stances[found])

@@ -24,13 +24,11 @@ class Maintained:
     Attributes:
         limb: whether each leg alone can keep its contact.
         both: whether the posture as a whole stands: legs clear of each other, robust.
-        robustness: of the posture [N]; minus infinity where a leg cannot keep its contact.
         com: centre of mass in the world [m].
     """
 
     limb: Bool[np.ndarray, "N 2"]
     both: Bool[np.ndarray, " N"]
-    robustness: Float[np.ndarray, " N"]
     com: Float[np.ndarray, "N 3"]
 
 
@@ -64,9 +62,7 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     both = kept.all(axis=1) & ~legs_touch(segments[:, 0], segments[:, 1])
     moments = mass_moments(world.legs, placed).reshape(count, LIMBS, 3).sum(axis=1)
     com = (body_moments(world.legs, roots) + moments) / world.legs.mass
-    robustness = np.full(count, -np.inf)
     rows = np.flatnonzero(both)
     if len(rows):
-        robustness[rows] = world.robustness(stances[rows], com[rows])
-    both &= robustness >= world.settings.least_robustness
-    return Maintained(kept, both, robustness, com)
+        both[rows] = world.is_robust(stances[rows], com[rows])
+    return Maintained(kept, both, com)

@@ -82,8 +82,7 @@ class _Walk:
             if len(blocked):
                 failed = self._step(blocked, can_stay)
                 self._reposition(failed)
-        seconds = perf_counter() - self.begun
-        return self.diary.plans(self.guides, self.world.ground, self.reasons, seconds)
+        return self.diary.plans(self.world, self.guides, self.reasons, self.begun)
 
     def _start(self) -> None:
         first = first_stances(self.world, self.guides)
@@ -96,8 +95,7 @@ class _Walk:
         )
         good = np.flatnonzero(first.found & free)
         self.diary.write(
-            "start", good, self.at[good], -1, self.stances[good], first.robustness[good],
-            first.com[good],
+            "start", good, self.at[good], -1, self.stances[good], first.com[good]
         )  # fmt: skip
         self._finish(good)
 
@@ -117,7 +115,7 @@ class _Walk:
         taken = good[row, look]
         self.diary.write(
             "kept", guide[taken], at[taken], -1, self.stances[guide[taken]],
-            kept.robustness[taken], kept.com[taken],
+            kept.com[taken],
         )  # fmt: skip
         progress = good.sum(axis=1)
         self.at[walking] += progress
@@ -199,8 +197,7 @@ class _Walk:
         self.at[rows] = at[done]
         self.order[rows] += 1
         self.diary.write(
-            how, rows, self.at[rows], limb[done], self.stances[rows], made.robustness[done],
-            made.com[done],
+            how, rows, self.at[rows], limb[done], self.stances[rows], made.com[done]
         )  # fmt: skip
         return done
 
