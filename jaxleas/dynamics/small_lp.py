@@ -51,74 +51,90 @@ def maximise(
         1.0 + (np.arange(height) * 0.6180339887 % 1.0)
     )
     # Tableau: slack = bounds - rows y; the last row is the objective, the last column the constant.
-    tableau = np.zeros((count, height + 1, width + 1))
+    tableau = np.empty((count, height + 1, width + 1))
     tableau[:, :height, :width] = -rows
     tableau[:, :height, width] = shaken
     tableau[:, height, :width] = objective
+    tableau[:, height, width] = 0.0
     # Names: 0 .. height - 1 are slacks, height + v is variable v.
-    basic = np.broadcast_to(np.arange(height), (count, height)).copy()
-    nonbasic = np.broadcast_to(height + np.arange(width), (count, width)).copy()
-    solved = np.zeros(count, dtype=bool)
-    live = np.arange(count)
+    search = _Search(
+        tableau,
+        basic=np.broadcast_to(np.arange(height), (count, height)).copy(),
+        nonbasic=np.broadcast_to(height + np.arange(width), (count, width)).copy(),
+        name=np.arange(count),
+    )
+    answer = SmallLpSolution(
+        np.zeros((count, width)), np.full((count, width), -1), np.zeros(count, dtype=bool)
+    )
     for _ in range(most_pivots):
-        live = _pivot(tableau, basic, nonbasic, solved, live)
-        if not len(live):
+        search = search.pivot(answer)
+        if not len(search.name):
             break
-    variables = np.zeros((count, width))
-    problem, row = np.nonzero(basic >= height)
-    variables[problem, basic[problem, row] - height] = tableau[problem, row, width]
-    return SmallLpSolution(variables, np.where(nonbasic < height, nonbasic, -1), solved)
+    return answer
 
 
-def _pivot(
-    tableau: np.ndarray,
-    basic: np.ndarray,
-    nonbasic: np.ndarray,
-    solved: np.ndarray,
-    live: np.ndarray,
-) -> np.ndarray:
-    """Exchange one variable in each live problem; return those that are still undecided."""
-    height, width = basic.shape[1], nonbasic.shape[1]
-    some = tableau[live] if len(live) < len(tableau) else tableau
-    gain = some[:, height, :width]
-    free = nonbasic[live] >= height
-    # A nonbasic slack may only grow; a free variable moves either way, and goes first.
-    attraction = np.where(free, np.abs(gain) * 1e6, gain)
-    column = attraction.argmax(axis=1)
-    each = np.arange(len(live))
-    going = attraction[each, column] > _PIVOT
-    if not going.all():
-        solved[live[~going]] = True
-        live, column = live[going], column[going]
-        if not len(live):
-            return live
-        some, free, each = some[going], free[going], np.arange(len(live))
-    sign = np.where(some[each, height, column] < 0.0, -1.0, 1.0)
-    entering = some[each, :, column]  # [live, height + 1]
-    fall = entering[:, :height] * sign[:, None]
-    # Only slacks limit the way: a basic free variable may take any value.
-    limits = (fall < -_PIVOT) & (basic[live] < height)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        step = np.where(limits, some[:, :height, width] / -fall, np.inf)
-    row = step.argmin(axis=1)
-    bounded = np.isfinite(step[each, row])
-    if not bounded.all():  # unbounded: left unsolved
-        live, column, row = live[bounded], column[bounded], row[bounded]
-        some, entering = some[bounded], entering[bounded]
-        each = np.arange(len(live))
-        if not len(live):
-            return live
-    pivot_row = some[each, row]  # [live, width + 1]
-    pivot = pivot_row[each, column]
-    share = entering / pivot[:, None]
-    share[each, row] = 0.0
-    updated = some - share[:, :, None] * pivot_row[:, None, :]
-    updated[each, :, column] = share
-    pivot_row = -pivot_row / pivot[:, None]
-    pivot_row[each, column] = 1.0 / pivot
-    updated[each, row] = pivot_row
-    tableau[live] = updated
-    left = basic[live, row]
-    basic[live, row] = nonbasic[live, column]
-    nonbasic[live, column] = left
-    return live
+@dataclass
+class _Search:
+    """Tableaux that are still being worked on; the names tell whose they are."""
+
+    tableau: np.ndarray
+    basic: np.ndarray
+    nonbasic: np.ndarray
+    name: np.ndarray
+
+    def pivot(self, answer: SmallLpSolution) -> "_Search":
+        """Exchange one variable in each problem; write down and leave those that are done."""
+        height, width = self.basic.shape[1], self.nonbasic.shape[1]
+        gain = self.tableau[:, height, :width]
+        # A nonbasic slack may only grow; a free variable moves either way, and goes first.
+        attraction = np.where(self.nonbasic >= height, np.abs(gain) * 1e6, gain)
+        column = attraction.argmax(axis=1)
+        each = np.arange(len(column))
+        done = attraction[each, column] <= _PIVOT
+        if done.any():
+            self._among(done)._write(answer)
+            going = ~done
+            return self._among(going)._exchange(column[going])
+        return self._exchange(column)
+
+    def _exchange(self, column: np.ndarray) -> "_Search":
+        tableau, basic, nonbasic = self.tableau, self.basic, self.nonbasic
+        height, width, each = basic.shape[1], nonbasic.shape[1], np.arange(len(column))
+        entering = tableau[each, :, column]  # [problems, height + 1]
+        sign = np.where(entering[:, height:] < 0.0, 1.0, -1.0)
+        # Only slacks limit the way: a basic free variable may take any value.
+        fall = np.where(basic < height, entering[:, :height] * sign, 0.0)
+        constants = tableau[:, :height, width]
+        step = np.where(fall > _PIVOT, constants / np.maximum(fall, _PIVOT), np.inf)
+        row = step.argmin(axis=1)
+        bounded = step[each, row] < np.inf
+        if not bounded.all():  # unbounded: left unsolved
+            return self._among(bounded)._exchange(column[bounded])
+        pivot_row = tableau[each, row]
+        pivot_row /= pivot_row[each, column][:, None]
+        share = entering
+        left_share = share[each, row]
+        share[each, row] = 0.0
+        tableau -= share[:, :, None] * pivot_row[:, None, :]
+        pivot_row *= -1.0
+        pivot_row[each, column] = 1.0 / left_share
+        tableau[each, row] = pivot_row
+        # The column of what has left: shares of the pivot.
+        share /= left_share[:, None]
+        share[each, row] = pivot_row[each, column]
+        tableau[each, :, column] = share
+        basic[each, row], nonbasic[each, column] = nonbasic[each, column], basic[each, row]
+        return self
+
+    def _among(self, which: np.ndarray) -> "_Search":
+        return _Search(
+            self.tableau[which], self.basic[which], self.nonbasic[which], self.name[which]
+        )
+
+    def _write(self, answer: SmallLpSolution) -> None:
+        height, width = self.basic.shape[1], self.nonbasic.shape[1]
+        problem, row = np.nonzero(self.basic >= height)
+        variable = self.basic[problem, row] - height
+        answer.variables[self.name[problem], variable] = self.tableau[problem, row, width]
+        answer.active[self.name] = np.where(self.nonbasic < height, self.nonbasic, -1)
+        answer.solved[self.name] = True
