@@ -31,6 +31,7 @@ COMMANDS = {
         "export",
         "write a policy as ONNX and StableHLO, checked",
     ),
+    "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 
