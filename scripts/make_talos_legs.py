@@ -23,7 +23,7 @@ from scipy.spatial import ConvexHull
 
 from jaxleas.files import write_json
 from jaxleas.geometry import Polytope
-from jaxleas.robots.leg_kinematics import leg_com, leg_posture
+from jaxleas.robots.leg_kinematics import leg_posture, mass_moment
 from jaxleas.robots.legs import MIRRORED_JOINTS, LegModel, read_legs
 
 BOXES = {"thigh_box": "hip_y", "shank_box": "knee", "foot_box": "ankle_X"}
@@ -92,11 +92,11 @@ def com_in_foot(legs: LegModel, samples: int, seed: int) -> Polytope:
     lower[KNEE] = max(lower[KNEE], LEAST_KNEE_BEND)
     angles = np.random.default_rng(seed).uniform(lower, legs.upper, (samples, len(lower)))
     posture = leg_posture(legs, angles)
-    level = posture.foot_rotation[:, 2, 2] >= np.cos(MOST_TILT)
+    level = posture.foot[:, 2, 2] >= np.cos(MOST_TILT)
     below = posture.sole[:, 2] <= -0.4
     own_side = posture.sole[:, 1] >= -FOOT_HALF_SIZE[1]
     keep = level & below & own_side
-    rotation, sole = posture.foot_rotation[keep], posture.sole[keep]
+    rotation, sole = posture.foot[keep], posture.sole[keep]
     yaw = np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0])
     x, y, z = (reference_com(legs) - sole).T
     cosine, sine = np.cos(yaw), np.sin(yaw)
@@ -113,7 +113,8 @@ def com_in_foot(legs: LegModel, samples: int, seed: int) -> Polytope:
 
 def reference_com(legs: LegModel) -> np.ndarray:
     """Return the whole robot's centre of mass in the root frame, standing."""
-    moment = leg_com(legs, leg_posture(legs, legs.reference), legs.reference)
+    standing = leg_posture(legs, legs.reference)
+    moment = mass_moment(legs, standing.frames, standing.origins)
     both = moment + moment * np.array([1.0, -1.0, 1.0])
     return (legs.body_mass * legs.body_com + both) / legs.mass
 

@@ -9,44 +9,58 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.robots.legs import LegModel
+from jaxleas.robots.legs import JOINTS, LegModel
+
+# Of each joint: the axis it turns about, then the two that it turns, in cyclic order.
+_X, _Y, _Z = (0, 1, 2), (1, 2, 0), (2, 0, 1)
+_AXES = (_Z, _X, _Y, _Y, _Y, _X)
 
 
 @dataclass(frozen=True)
 class LegPosture:
-    """Where the parts of the left leg are, in the root frame.
+    """Where the six links of the left leg are, in the root frame.
 
     Attributes:
-        hip_rotation: of the thigh.
-        knee: position [m].
-        knee_rotation: of the shank.
-        ankle: position [m].
-        foot_rotation: of foot and sole; its third column is the sole's normal.
+        frames: of the links, each turned by its joint; the last is the foot's, whose third column
+            is the sole's normal.
+        origins: of the joints: three times the hip, the knee, twice the ankle [m].
         sole: position of the sole's origin [m].
     """
 
-    hip_rotation: Float[np.ndarray, "*batch 3 3"]
-    knee: Float[np.ndarray, "*batch 3"]
-    knee_rotation: Float[np.ndarray, "*batch 3 3"]
-    ankle: Float[np.ndarray, "*batch 3"]
-    foot_rotation: Float[np.ndarray, "*batch 3 3"]
+    frames: Float[np.ndarray, "*batch 6 3 3"]
+    origins: Float[np.ndarray, "*batch 6 3"]
     sole: Float[np.ndarray, "*batch 3"]
+
+    @property
+    def foot(self) -> Float[np.ndarray, "*batch 3 3"]:
+        """The rotation of foot and sole."""
+        return self.frames[..., 5, :, :]
 
 
 def leg_posture(legs: LegModel, angles: Float[np.ndarray, "*batch 6"]) -> LegPosture:
-    """Place the left leg's parts in the root frame.
+    """Place the left leg's links in the root frame.
 
     Args:
         legs: the model.
         angles: of the six joints [rad].
     """
-    hip_rotation = turn_z(angles[..., 0]) @ turn_x(angles[..., 1]) @ turn_y(angles[..., 2])
-    knee = legs.hip - legs.thigh * hip_rotation[..., :, 2]
-    knee_rotation = hip_rotation @ turn_y(angles[..., 3])
-    ankle = knee - legs.shank * knee_rotation[..., :, 2]
-    foot_rotation = knee_rotation @ turn_y(angles[..., 4]) @ turn_x(angles[..., 5])
-    sole = ankle - legs.sole * foot_rotation[..., :, 2]
-    return LegPosture(hip_rotation, knee, knee_rotation, ankle, foot_rotation, sole)
+    batch = angles.shape[:-1]
+    cosines, sines = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    frames = np.empty((*batch, JOINTS, 3, 3))
+    before = np.broadcast_to(np.eye(3), (*batch, 3, 3))
+    for joint, (kept, first, second) in enumerate(_AXES):
+        cosine, sine = cosines[..., joint, :], sines[..., joint, :]
+        frame = frames[..., joint, :, :]
+        frame[..., kept] = before[..., kept]
+        frame[..., first] = cosine * before[..., first] + sine * before[..., second]
+        frame[..., second] = cosine * before[..., second] - sine * before[..., first]
+        before = frame
+    origins = np.empty((*batch, JOINTS, 3))
+    origins[..., :3, :] = legs.hip
+    origins[..., 3, :] = legs.hip - legs.thigh * frames[..., 2, :, 2]
+    origins[..., 4, :] = origins[..., 3, :] - legs.shank * frames[..., 3, :, 2]
+    origins[..., 5, :] = origins[..., 4, :]
+    return LegPosture(frames, origins, origins[..., 5, :] - legs.sole * frames[..., 5, :, 2])
 
 
 def leg_angles(
@@ -99,51 +113,11 @@ def leg_angles(
     return angles, in_reach & within
 
 
-def leg_com(legs: LegModel, posture: LegPosture, angles: Float[np.ndarray, "*batch 6"]):
-    """Return the left leg's first mass moment in the root frame: sum of mass times position [kg m].
-
-    Args:
-        legs: the model.
-        posture: of the leg.
-        angles: that it was made from [rad].
-    """
-    yaw = turn_z(angles[..., 0])
-    roll = yaw @ turn_x(angles[..., 1])
-    ankle_rotation = posture.knee_rotation @ turn_y(angles[..., 4])
-    frames = (
-        (yaw, legs.hip),
-        (roll, legs.hip),
-        (posture.hip_rotation, legs.hip),
-        (posture.knee_rotation, posture.knee),
-        (ankle_rotation, posture.ankle),
-        (posture.foot_rotation, posture.ankle),
-    )
-    moment = 0.0
-    for (rotation, origin), mass, com in zip(frames, legs.link_mass, legs.link_com, strict=True):
-        moment = moment + mass * (rotation @ com + origin)
-    return moment
-
-
-def turn_x(angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
-    """Return rotations about x."""
-    return _turn(angle, 1, 2)
-
-
-def turn_y(angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
-    """Return rotations about y."""
-    return _turn(angle, 2, 0)
-
-
-def turn_z(angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
-    """Return rotations about z."""
-    return _turn(angle, 0, 1)
-
-
-def _turn(angle: np.ndarray, first: int, second: int) -> np.ndarray:
-    rotation = np.zeros((*np.shape(angle), 3, 3))
-    cosine, sine = np.cos(angle), np.sin(angle)
-    rotation[..., 3 - first - second, 3 - first - second] = 1.0
-    rotation[..., first, first] = rotation[..., second, second] = cosine
-    rotation[..., second, first] = sine
-    rotation[..., first, second] = -sine
-    return rotation
+def mass_moment(
+    legs: LegModel,
+    frames: Float[np.ndarray, "*batch 6 3 3"],
+    origins: Float[np.ndarray, "*batch 6 3"],
+) -> Float[np.ndarray, "*batch 3"]:
+    """Return the sum of mass times centre over the links, where frames and origins are [kg m]."""
+    centres = (frames @ legs.link_com[:, :, None])[..., 0] + origins
+    return (legs.link_mass[:, None] * centres).sum(axis=-2)

@@ -13,7 +13,6 @@ from jaxleas.contacts.sampling.limbs import (
     PlacedLegs,
     body_moments,
     legs_collide,
-    mass_moments,
     place_legs,
     rotations_to_world,
     to_world,
@@ -21,6 +20,7 @@ from jaxleas.contacts.sampling.limbs import (
 from jaxleas.contacts.sampling.stance import Stances, support_corners
 from jaxleas.contacts.sampling.two_point import com_exists
 from jaxleas.contacts.sampling.world import World
+from jaxleas.robots.leg_kinematics import mass_moment
 
 _ROBUSTNESS_AT_FIRST = 3  # of the candidates that pass all else
 
@@ -135,7 +135,7 @@ def _try(
     rows = rows[~legs_collide(world.legs, placed, rows, ground, feet=True)]
     rows = _clear_of_other_leg(world, placed, kept, some.row, rows)
     rows = rows[_two_points(world, aim, stances, some.row[rows], sole[rows], rotation[rows])]
-    passed = _some_legs(placed, rows)
+    passed = placed[rows]
     return _Tried(
         row=some.row[rows],
         sole=sole[rows],
@@ -144,7 +144,7 @@ def _try(
         corners=support_corners(
             ground, sole[rows], rotation[rows], some.surface[rows], world.robot.foot_half_size
         ),
-        moment=mass_moments(world.legs, passed),
+        moment=mass_moment(world.legs, passed.frames, passed.origins),
     )
 
 
@@ -157,7 +157,8 @@ def _take_first_robust(
     result: Created,
 ) -> None:
     """Write the first robust candidate of each row into the result."""
-    resting = body_moments(world.legs, aim.roots) + mass_moments(world.legs, kept)
+    resting = body_moments(world.legs, aim.roots)
+    resting = resting + mass_moment(world.legs, kept.frames, kept.origins)
     rank = np.arange(len(tried.row)) - np.searchsorted(tried.row, tried.row)
     for chosen in (rank < _ROBUSTNESS_AT_FIRST, rank >= _ROBUSTNESS_AT_FIRST):
         some = tried[chosen & ~result.found[tried.row]]
@@ -217,19 +218,6 @@ def _two_points(
 def _clear_of_other_leg(
     world: World, placed: PlacedLegs, kept: PlacedLegs, row: np.ndarray, chosen: np.ndarray
 ) -> np.ndarray:
-    moving = leg_segments(world.legs, _some_legs(placed, chosen))
+    moving = leg_segments(world.legs, placed[chosen])
     standing = leg_segments(world.legs, kept)[row[chosen]]
     return chosen[~legs_touch(moving, standing)]
-
-
-def _some_legs(placed: PlacedLegs, rows: np.ndarray) -> PlacedLegs:
-    posture = type(placed.posture)(
-        *(getattr(placed.posture, name)[rows] for name in placed.posture.__dataclass_fields__)
-    )
-    return PlacedLegs(
-        placed.roots[rows],
-        placed.side[rows],
-        placed.angles[rows],
-        placed.reachable[rows],
-        posture,
-    )

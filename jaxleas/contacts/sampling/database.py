@@ -70,7 +70,7 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
     for x, y in _TILTS:
         normal = np.array([np.sin(x), np.sin(y), 0.0])
         normal[2] = np.sqrt(1.0 - normal @ normal)
-        aligned = align(posture.foot_rotation, np.broadcast_to(normal, (samples, 3)))
+        aligned = align(posture.foot, np.broadcast_to(normal, (samples, 3)))
         usable |= leg_angles(legs, posture.sole, aligned)[1]
     kept = np.flatnonzero(usable)
     kept = kept[np.argsort(posture.sole[kept, 2], kind="stable")]
@@ -83,7 +83,7 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
         drawn=samples,
         angles=angles[kept],
         soles=soles,
-        rotations=posture.foot_rotation[kept],
+        rotations=posture.foot[kept],
         manipulability=manipulability / max(float(manipulability.max(initial=0.0)), 1e-12),
         translation=linear @ linear.transpose(0, 2, 1),
         reach=float(np.linalg.norm(soles[:, :2], axis=1).max(initial=0.0)),
@@ -100,24 +100,10 @@ def sole_jacobian(
     Column j is (a_j x (sole - o_j); a_j) for the joint's axis a_j through o_j.
     """
     posture = leg_posture(legs, angles)
-    yaw, roll = angles[:, 0], angles[:, 1]
-    zero = np.zeros_like(yaw)
-    lateral = posture.hip_rotation[:, :, 1]  # hip pitch, knee and ankle pitch turn about this
-    axes = np.stack(
-        [
-            np.stack([zero, zero, zero + 1.0], axis=1),
-            np.stack([np.cos(yaw), np.sin(yaw), zero], axis=1),
-            lateral,
-            lateral,
-            lateral,
-            posture.foot_rotation[:, :, 0],
-        ],
-        axis=1,
-    )
-    del roll  # it is in hip_rotation
-    hip = np.broadcast_to(legs.hip, posture.knee.shape)
-    origins = np.stack([hip, hip, hip, posture.knee, posture.ankle, posture.ankle], axis=1)
-    linear = cross(axes, posture.sole[:, None] - origins)
+    about = np.array([2, 0, 1, 1, 1, 0])  # each joint's own axis, a column of its frame
+    axes = posture.frames[:, np.arange(6), :, about].transpose(1, 0, 2)
+    arms = posture.sole[:, None] - posture.origins
+    linear = cross(axes, arms)
     return np.concatenate([linear, axes], axis=2).transpose(0, 2, 1)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.sampling.limbs import PlacedLegs, to_world
+from jaxleas.contacts.sampling.limbs import PlacedLegs
 from jaxleas.robots.legs import LegModel
 
 FOOT_RADIUS = 0.065
@@ -15,15 +15,13 @@ _PAIRS = ((0, 0), (1, 1), (0, 1), (1, 0))  # foot and foot, shank and shank, foo
 
 def leg_segments(legs: LegModel, placed: PlacedLegs) -> Float[np.ndarray, "N 2 2 3"]:
     """Return the middle lines of foot and shank in the world, as two end points each [m]."""
-    posture = placed.posture
-    forward, up = posture.foot_rotation[:, :, 0], posture.foot_rotation[:, :, 2]
-    middle = posture.sole + FOOT_RADIUS * up
-    heel = middle + (legs.foot_box.low[0] + FOOT_RADIUS) * forward
-    toe = middle + (legs.foot_box.high[0] - FOOT_RADIUS) * forward
-    ends = np.concatenate([heel, toe, posture.knee, posture.ankle])
-    yaw, side = np.tile(placed.roots.yaw, 4), np.tile(placed.side, 4)
-    world = to_world(ends, yaw, side) + np.tile(placed.roots.position, (4, 1))
-    return world.reshape(2, 2, len(placed.side), 3).transpose(2, 0, 1, 3)
+    forward, up = placed.frames[:, 5, :, 0], placed.frames[:, 5, :, 2]
+    middle = placed.sole + FOOT_RADIUS * up
+    segments = np.empty((len(middle), 2, 2, 3))
+    segments[:, 0, 0] = middle + (legs.foot_box.low[0] + FOOT_RADIUS) * forward
+    segments[:, 0, 1] = middle + (legs.foot_box.high[0] - FOOT_RADIUS) * forward
+    segments[:, 1] = placed.origins[:, 3:5]
+    return segments
 
 
 def legs_touch(

@@ -7,12 +7,12 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.box_collision import boxes_meet_ground
 from jaxleas.contacts.sampling.ground import Ground
-from jaxleas.geometry.boxes import Box
-from jaxleas.robots.leg_kinematics import LegPosture, leg_angles, leg_com, leg_posture
+from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
 from jaxleas.robots.legs import MIRRORED_JOINTS, LegModel
 
 SIDES = np.array([1.0, -1.0])
 """Sign of y: left, right."""
+_BOX_LINKS = np.array([2, 3, 5])  # thigh, shank, foot
 
 
 @dataclass(frozen=True)
@@ -38,39 +38,48 @@ class Roots:
 
 @dataclass(frozen=True)
 class PlacedLegs:
-    """Legs that reach for a foothold, one a row, mirrored to the left leg and in the root frame.
+    """Legs that reach for a foothold, one a row, in the world.
 
     Attributes:
-        roots: of the robots.
         side: +1 left, -1 right.
-        angles: of the joints, the left leg's convention [rad].
+        angles: of the joints, in the left leg's convention [rad].
         reachable: whether the foothold is in reach within the joint limits.
-        posture: where the parts are.
+        frames: of the six links; of a right leg mirror images, whose second axis is reversed.
+        origins: of the joints [m].
+        sole: position of the sole's origin [m].
     """
 
-    roots: Roots
     side: Float[np.ndarray, " N"]
     angles: Float[np.ndarray, "N 6"]
     reachable: Bool[np.ndarray, " N"]
-    posture: LegPosture
+    frames: Float[np.ndarray, "N 6 3 3"]
+    origins: Float[np.ndarray, "N 6 3"]
+    sole: Float[np.ndarray, "N 3"]
+
+    def __getitem__(self, rows) -> "PlacedLegs":
+        """Return some of the legs."""
+        return PlacedLegs(
+            self.side[rows],
+            self.angles[rows],
+            self.reachable[rows],
+            self.frames[rows],
+            self.origins[rows],
+            self.sole[rows],
+        )
 
 
 def to_left_root(
     vectors: Float[np.ndarray, "N 3"], yaw: Float[np.ndarray, " N"], side: Float[np.ndarray, " N"]
 ) -> Float[np.ndarray, "N 3"]:
     """Turn world vectors into the root's axes and mirror the right leg's."""
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    x, y, z = vectors[:, 0], vectors[:, 1], vectors[:, 2]
-    return np.stack([cosine * x + sine * y, side * (cosine * y - sine * x), z], axis=1)
+    return (vectors[:, None] @ _left_root_frames(yaw, side))[:, 0]
 
 
 def to_world(
     vectors: Float[np.ndarray, "N 3"], yaw: Float[np.ndarray, " N"], side: Float[np.ndarray, " N"]
 ) -> Float[np.ndarray, "N 3"]:
     """Undo `to_left_root`."""
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    x, y, z = vectors[:, 0], side * vectors[:, 1], vectors[:, 2]
-    return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
+    return (_left_root_frames(yaw, side) @ vectors[:, :, None])[:, :, 0]
 
 
 def rotations_to_world(
@@ -79,7 +88,9 @@ def rotations_to_world(
     side: Float[np.ndarray, " N"],
 ) -> Float[np.ndarray, "N 3 3"]:
     """Turn left-leg rotations in the root frame into the world, mirroring the right leg's."""
-    return _turned(_mirrored(rotations, side), yaw)
+    turned = _left_root_frames(yaw, side) @ rotations
+    turned[:, :, 1] *= side[:, None]
+    return turned
 
 
 def rotations_to_left_root(
@@ -88,7 +99,9 @@ def rotations_to_left_root(
     side: Float[np.ndarray, " N"],
 ) -> Float[np.ndarray, "N 3 3"]:
     """Undo `rotations_to_world`."""
-    return _mirrored(_turned(rotations, -yaw), side)
+    turned = _left_root_frames(yaw, side).transpose(0, 2, 1) @ rotations
+    turned[:, :, 1] *= side[:, None]
+    return turned
 
 
 def place_legs(
@@ -110,7 +123,16 @@ def place_legs(
     side = SIDES[limb]
     local = to_left_root(sole - roots.position, roots.yaw, side)
     angles, reachable = leg_angles(legs, local, rotations_to_left_root(rotation, roots.yaw, side))
-    return PlacedLegs(roots, side, angles, reachable, leg_posture(legs, angles))
+    posture = leg_posture(legs, angles)
+    turn = _left_root_frames(roots.yaw, side)[:, None]
+    return PlacedLegs(
+        side,
+        angles,
+        reachable,
+        turn @ posture.frames,
+        posture.origins @ turn[:, 0].transpose(0, 2, 1) + roots.position[:, None],
+        sole,
+    )
 
 
 def joint_angles(placed: PlacedLegs) -> Float[np.ndarray, "N 6"]:
@@ -135,36 +157,21 @@ def legs_collide(
         ground: the scene.
         feet: whether feet count; one that keeps its contact has been judged before.
     """
-    posture = placed.posture
-    parts: list[tuple[np.ndarray, np.ndarray, Box]] = [
-        (posture.hip_rotation, np.broadcast_to(legs.hip, posture.knee.shape), legs.thigh_box),
-        (posture.knee_rotation, posture.knee, legs.shank_box),
-    ]
-    if feet:
-        parts.append((posture.foot_rotation, posture.ankle, legs.foot_box))
-    turns, middles, halves = [], [], []
-    for rotation, origin, box in parts:
-        low, high = np.asarray(box.low), np.asarray(box.high)
-        turns.append(rotation[rows])
-        middles.append(origin[rows] + rotation[rows] @ (0.5 * (low + high)))
-        halves.append(np.broadcast_to(0.5 * (high - low), (len(rows), 3)))
-    count = len(parts)
-    yaw, side = np.tile(placed.roots.yaw[rows], count), np.tile(placed.side[rows], count)
-    position = np.tile(placed.roots.position[rows], (count, 1))
+    count = len(_BOX_LINKS) if feet else len(_BOX_LINKS) - 1
+    boxes = (legs.thigh_box, legs.shank_box, legs.foot_box)[:count]
+    middle = np.array([0.5 * (np.add(box.low, box.high)) for box in boxes])
+    half = np.array([0.5 * (np.subtract(box.high, box.low)) for box in boxes])
+    links = _BOX_LINKS[:count]
+    # A box looks the same in a mirrored frame: its axes need not be right-handed.
+    frames = placed.frames[rows[:, None], links]
+    centres = (frames @ middle[:, :, None])[..., 0] + placed.origins[rows[:, None], links]
     hits = boxes_meet_ground(
-        to_world(np.concatenate(middles), yaw, side) + position,
-        rotations_to_world(np.concatenate(turns), yaw, side),
-        np.concatenate(halves),
+        centres.reshape(-1, 3),
+        frames.reshape(-1, 3, 3),
+        np.broadcast_to(half, centres.shape).reshape(-1, 3),
         ground,
     )
-    return hits.reshape(count, len(rows)).any(axis=0)
-
-
-def mass_moments(legs: LegModel, placed: PlacedLegs) -> Float[np.ndarray, "N 3"]:
-    """Return each leg's mass times position in the world [kg m]."""
-    moment = leg_com(legs, placed.posture, placed.angles)
-    mass = float(legs.link_mass.sum())
-    return to_world(moment, placed.roots.yaw, placed.side) + mass * placed.roots.position
+    return hits.reshape(len(rows), count).any(axis=1)
 
 
 def body_moments(legs: LegModel, roots: Roots) -> Float[np.ndarray, "N 3"]:
@@ -174,15 +181,11 @@ def body_moments(legs: LegModel, roots: Roots) -> Float[np.ndarray, "N 3"]:
     return legs.body_mass * (to_world(com, roots.yaw, ones) + roots.position)
 
 
-def _mirrored(rotations: np.ndarray, side: np.ndarray) -> np.ndarray:
-    signs = np.ones((len(side), 3, 3))
-    signs[:, 0, 1] = signs[:, 1, 0] = signs[:, 1, 2] = signs[:, 2, 1] = side
-    return rotations * signs
-
-
-def _turned(rotations: np.ndarray, yaw: np.ndarray) -> np.ndarray:
-    cosine, sine = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
-    first, second = rotations[:, 0], rotations[:, 1]
-    return np.stack(
-        [cosine * first - sine * second, sine * first + cosine * second, rotations[:, 2]], axis=1
-    )
+def _left_root_frames(yaw: np.ndarray, side: np.ndarray) -> Float[np.ndarray, "N 3 3"]:
+    """Return the matrices of `to_world`."""
+    frames = np.zeros((len(yaw), 3, 3))
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    frames[:, 0, 0], frames[:, 0, 1] = cosine, -sine * side
+    frames[:, 1, 0], frames[:, 1, 1] = sine, cosine * side
+    frames[:, 2, 2] = 1.0
+    return frames
