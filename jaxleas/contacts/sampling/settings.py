@@ -34,5 +34,5 @@ class SamplingSettings(Strict):
     """of a whole plan"""
     moved: PositiveFloat = 0.01
     """a contact that moves by less counts as the same one [m]"""
-    stages: tuple[PositiveInt, ...] = (16, 40, 168)
+    stages: tuple[PositiveInt, ...] = (24, 200)
     """so many candidates are tried together, then so many more, ..."""

@@ -10,7 +10,7 @@ from jaxleas.contacts.sampling.ground import Ground, ground_of
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.stance import Stances
 from jaxleas.dynamics.equilibrium import equilibrium_robustness
-from jaxleas.dynamics.equilibrium_bound import is_surely_robust
+from jaxleas.dynamics.equilibrium_bound import decide_robustness
 from jaxleas.robots import Robot, load_talos
 from jaxleas.robots.legs import LegModel, load_talos_legs
 from jaxleas.terrain.scene import Scene
@@ -48,10 +48,10 @@ class World:
         points, normals = _contact_points(stances)
         least = self.settings.least_robustness
         mass, friction = self.legs.mass, self.robot.friction
-        robust = is_surely_robust(
-            points, normals, com, mass=mass, friction=friction, least=max(least, 0.0)
+        robust, missing = decide_robustness(
+            points, normals, com, mass=mass, friction=friction, least=least
         )
-        open_ = np.flatnonzero(~robust)
+        open_ = np.flatnonzero(~(robust | missing))
         if len(open_):
             robust[open_] = self.robustness(stances[open_], com[open_]) >= least
         return robust
