@@ -86,12 +86,12 @@ def _solve(
     turned = np.concatenate([frame @ wrenches[:, :3], wrenches[:, 3:]], axis=1)
     wanted = np.concatenate([(frame @ force[:, :, None])[:, :, 0], np.zeros_like(force)], axis=1)
     total = turned.sum(axis=2)
-    leading = total[:, 0]
+    usable = (turned[:, 0] > 0.0).all(axis=1)
+    leading = np.where(usable, total[:, 0], 1.0)
     gamma = turned[:, 0] / leading[:, None]
     share = wanted[:, 0] / leading
     A = turned[:, 1:] - total[:, 1:, None] * gamma[:, None, :]
     r = wanted[:, 1:] - total[:, 1:] * share[:, None]
-    usable = (gamma > 0.0).all(axis=1)
     # Scaled so that forces are about one: the tolerances of the solver are absolute.
     scale = np.linalg.norm(force, axis=1, keepdims=True)
     scale = np.where(scale > 0.0, scale, 1.0)

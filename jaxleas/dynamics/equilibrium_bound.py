@@ -8,7 +8,7 @@ from jaxleas.dynamics.friction import margin_of_generator
 from jaxleas.dynamics.vectors import cross
 
 _ROUNDS = 3
-_EXCESS = 2.0  # aim past the bound, so that projecting back does not fall short of it
+_EXCESS = 2.0  # [N]; aim past the bound, so that projecting back does not fall short of it
 _SIDED = 1e-9  # a generator that turns back by less counts as turning forwards
 
 
@@ -64,7 +64,7 @@ def _balances(wrenches: np.ndarray, weight: float, bound: float) -> Bool[np.ndar
     for _ in range(_ROUNDS):
         if (proved | ~regular).all():
             break
-        aim = np.maximum(forces, _EXCESS * bound)
+        aim = np.maximum(forces, bound + _EXCESS)
         missing = wanted - (wrenches @ aim[:, :, None])[:, :, 0]
         forces = aim + (back @ missing[:, :, None])[:, :, 0]
         proved |= forces.min(axis=1) >= bound

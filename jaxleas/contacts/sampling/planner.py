@@ -21,7 +21,7 @@ from jaxleas.contacts.sampling.world import World, talos_world
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
-_LOOK = 4  # configurations at which contacts are judged together; most are kept that long
+_LOOK = 3  # configurations at which contacts are judged together; most are kept that long
 _ABREAST = 64  # guide paths walked together: more does not fit the cache
 
 
