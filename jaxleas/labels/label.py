@@ -45,9 +45,7 @@ def plan_shards(
         for first in range(0, count, a_shard):
             name = Path(out) / path.stem / f"verdicts_{first:06d}.json"
             last = min(first + a_shard, count)
-            shards.append(
-                Shard(path, scene, planner, settings, first, last, name, provenance)
-            )
+            shards.append(Shard(path, scene, planner, settings, first, last, name, provenance))
     return shards
 
 

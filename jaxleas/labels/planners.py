@@ -17,7 +17,9 @@ def require_planner(name: str) -> None:
         InputError: says which do.
     """
     if name not in PLANNERS:
-        raise InputError(f"there is no planner {name!r} for labels; there are {', '.join(PLANNERS)}")
+        raise InputError(
+            f"there is no planner {name!r} for labels; there are {', '.join(PLANNERS)}"
+        )
 
 
 def judge(

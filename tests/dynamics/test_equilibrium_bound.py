@@ -13,9 +13,7 @@ def test_never_contradicts_the_linear_program_and_often_decides(least, level):
     if level:
         points, normals = np.tile(FEET, (200, 1, 1)), np.tile(UP, (200, 1, 1))
     exact = equilibrium_robustness(points, normals, com, mass=90.0, friction=0.5)
-    there, missing = decide_robustness(
-        points, normals, com, mass=90.0, friction=0.5, least=least
-    )
+    there, missing = decide_robustness(points, normals, com, mass=90.0, friction=0.5, least=least)
     assert not (there & (exact < least - 1e-9)).any()
     assert not (missing & (exact >= least + 1e-9)).any()
     if level and least >= 0.0:

@@ -76,18 +76,18 @@ def test_two_processes_say_the_same_as_one(work):
     assert label_shards(shards_of(folder), 2, lambda count: None) == (5, 0)
     together = [verdict for _, verdict in read_verdicts(folder / "out")]
     for one, other in zip(alone, together, strict=True):
-        assert (one.path, one.success, one.last_index) == (other.path, other.success, other.last_index)
+        assert (one.path, one.success, one.last_index) == (
+            other.path,
+            other.success,
+            other.last_index,
+        )
 
 
 def test_the_command_says_how_many_succeed(work, capsys):
     folder, _ = work
-    label(
-        [folder / "walks.npz"], scene=folder / "hole.json", out=folder / "out", processes=1
-    )
+    label([folder / "walks.npz"], scene=folder / "hole.json", out=folder / "out", processes=1)
     assert "of 5 guide paths succeed" in capsys.readouterr().out
-    label(
-        [folder / "walks.npz"], scene=folder / "hole.json", out=folder / "out", processes=1
-    )
+    label([folder / "walks.npz"], scene=folder / "hole.json", out=folder / "out", processes=1)
     assert "0 judged now" in capsys.readouterr().out
 
 

@@ -71,7 +71,9 @@ def _meet(
         second, third = (axis + 1) % 3, (axis + 2) % 3
         u, v = edges[:, :, second, None], edges[:, :, third, None]
         along = u * local[:, None, :, third] - v * local[:, None, :, second]  # [M, edge, vertex]
-        reach = np.abs(u[:, :, 0]) * half[:, third, None] + np.abs(v[:, :, 0]) * half[:, second, None]
+        reach = (
+            np.abs(u[:, :, 0]) * half[:, third, None] + np.abs(v[:, :, 0]) * half[:, second, None]
+        )
         # An edge of length zero (padding) gives 0 > 0: it separates nothing.
         apart |= ((along.min(axis=2) > reach) | (along.max(axis=2) < -reach)).any(axis=1)
     open_[undecided[apart]] = False

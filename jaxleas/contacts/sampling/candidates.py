@@ -110,7 +110,9 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
     found = [
         first[pair]
         + np.flatnonzero(
-            (halfspaces[pair] @ database.homogeneous[:, first[pair] : last[pair]] >= 0.0).all(axis=0)
+            (halfspaces[pair] @ database.homogeneous[:, first[pair] : last[pair]] >= 0.0).all(
+                axis=0
+            )
         )
         for pair in range(len(row))
     ]

@@ -125,9 +125,7 @@ def _try(
     sole = to_world(database.soles[some.sample], roots.yaw, side) + roots.position
     above = (normal * sole).sum(axis=1) - ground.offsets[some.surface]
     sole = sole + (world.settings.contact_lift - above)[:, None] * normal
-    rotation = align(
-        rotations_to_world(database.rotations[some.sample], roots.yaw, side), normal
-    )
+    rotation = align(rotations_to_world(database.rotations[some.sample], roots.yaw, side), normal)
     placed = place_legs(world.legs, roots, limb, sole, rotation)
     before = stances.sole[some.row, limb]
     good = placed.reachable & (np.linalg.norm(sole - before, axis=1) >= least_move)

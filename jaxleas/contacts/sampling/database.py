@@ -92,9 +92,7 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
     )
 
 
-def sole_jacobian(
-    legs: LegModel, angles: Float[np.ndarray, "N 6"]
-) -> Float[np.ndarray, "N 6 6"]:
+def sole_jacobian(legs: LegModel, angles: Float[np.ndarray, "N 6"]) -> Float[np.ndarray, "N 6 6"]:
     """Return velocity over turn rate of the sole for each joint's speed [m/s and rad/s].
 
     Column j is (a_j x (sole - o_j); a_j) for the joint's axis a_j through o_j.

@@ -77,7 +77,9 @@ class Diary:
             )
         return plans
 
-    def _columns(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Stances]:
+    def _columns(
+        self,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Stances]:
         if not self._entries:
             nothing = np.zeros(0, dtype=np.int64)
             return nothing, nothing, nothing, nothing, np.zeros((0, 3)), no_stances(0)

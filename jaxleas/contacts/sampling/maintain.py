@@ -60,7 +60,9 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     kept = kept.reshape(count, LIMBS)
     segments = leg_segments(world.legs, placed).reshape(count, LIMBS, 2, 2, 3)
     both = kept.all(axis=1) & ~legs_touch(segments[:, 0], segments[:, 1])
-    moments = mass_moment(world.legs, placed.frames, placed.origins).reshape(count, LIMBS, 3).sum(axis=1)
+    moments = (
+        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, LIMBS, 3).sum(axis=1)
+    )
     com = (body_moments(world.legs, roots) + moments) / world.legs.mass
     rows = np.flatnonzero(both)
     if len(rows):

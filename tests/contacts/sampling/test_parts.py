@@ -35,7 +35,7 @@ def test_boxes_touch_polygons_exactly_when_a_linear_program_says_so(random_polyg
     rng = np.random.default_rng(0)
     count = 60
     ground = ground_from([(str(i), p) for i, p in enumerate(random_polygons)], walkable=1)
-    centres = rng.uniform(-1.5, 1.5, (count, 3))
+    centres = rng.uniform(-0.9, 0.9, (count, 3))
     rotations = Rotation.random(count, random_state=1).as_matrix()
     rotations[::2, :, 1] *= -1.0  # mirror images count as well
     half = rng.uniform(0.02, 0.4, (count, 3))
@@ -120,10 +120,9 @@ def test_candidates_are_all_samples_near_a_surface_best_first():
         assert mine == expected
         assert len(mine) > 50
         samples = found.sample[found.row == row]
-        score = (
-            0.1 * world.database.manipulability[samples]
-            - ((world.database.soles[samples] - aim.target[row]) ** 2).sum(axis=1)
-        )
+        score = 0.1 * world.database.manipulability[samples] - (
+            (world.database.soles[samples] - aim.target[row]) ** 2
+        ).sum(axis=1)
         assert (np.diff(score) <= 1e-12).all()
         np.testing.assert_array_equal(found.rank[found.row == row], np.arange(len(samples)))
 
@@ -146,19 +145,21 @@ def test_two_points_agree_with_a_linear_program():
     polytope = load_talos_legs().com_in_foot
     count = 80
     yaw = rng.uniform(-0.5, 0.5, (count, 2))
-    turns = Rotation.from_euler("z", yaw.reshape(-1)).as_matrix().reshape(count, 2, 3, 3)
+    turns = Rotation.from_euler("z", yaw.reshape(-1, 1)).as_matrix().reshape(count, 2, 3, 3)
     side = np.where(rng.random(count) < 0.5, 1.0, -1.0)
     apart = np.column_stack(
         [rng.uniform(-0.9, 0.9, count), -side * rng.uniform(0.0, 0.7, count), rng.uniform(-0.5, 0.5, count)]
     )  # fmt: skip
     half = np.array([[0.1, 0.06], [-0.1, 0.06], [-0.1, -0.06], [0.1, -0.06]])
     corners = half @ turns[:, 0, :, :2].transpose(0, 2, 1)
-    found = com_exists(polytope, np.zeros((count, 3)), turns[:, 0], corners, apart, turns[:, 1], side)
+    found = com_exists(
+        polytope, np.zeros((count, 3)), turns[:, 0], corners, apart, turns[:, 1], side
+    )
     expected = []
     for index in range(count):
         A, b = [], []
         for foot, where, s in ((0, np.zeros(3), side[index]), (1, apart[index], -side[index])):
-            seen = (np.diag([1.0, s, 1.0]) @ turns[index, foot].T)
+            seen = np.diag([1.0, s, 1.0]) @ turns[index, foot].T
             A.append(polytope.normals @ seen)
             b.append(polytope.offsets + polytope.normals @ seen @ where)
         local = turns[index, 0].T[:2]

@@ -6,7 +6,7 @@ from jaxleas.terrain.polygons import box_faces
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
-DEPTH, RISER, LEAD = 0.3, 0.1, 1.2
+DEPTH, RISER, LEAD, STEPS = 0.3, 0.1, 1.2, 8
 
 
 def floor(x0: float, x1: float, y0: float, y1: float, z: float = 0.0) -> np.ndarray:
@@ -26,13 +26,13 @@ def wall() -> Scene:
     return Scene(flat().surfaces, {f"wall_{name}": face for name, face in faces.items()})
 
 
-def stairs(steps: int = 8) -> Scene:
+def stairs() -> Scene:
     surfaces = {"bottom": floor(-1.0, LEAD, -0.9, 0.9)}
-    for step in range(steps):
+    for step in range(STEPS):
         x = LEAD + step * DEPTH
         surfaces[f"step_{step}"] = floor(x + 0.01, x + DEPTH - 0.01, -0.9, 0.9, (step + 1) * RISER)
-    x = LEAD + steps * DEPTH
-    surfaces["top"] = floor(x + 0.01, x + 3.0, -0.9, 0.9, (steps + 1) * RISER)
+    x = LEAD + STEPS * DEPTH
+    surfaces["top"] = floor(x + 0.01, x + 3.0, -0.9, 0.9, (STEPS + 1) * RISER)
     return Scene(surfaces)
 
 
@@ -47,7 +47,7 @@ def straight(
     """A guide path along x at 0.1 m/s, a configuration every 2 cm."""
     rows = round(length / 0.02) + 1
     x = start + 0.02 * np.arange(rows)
-    ground = np.clip((x - LEAD + 0.5 * DEPTH) / DEPTH, 0.0, 100.0) * RISER * climbing
+    ground = np.clip((x - LEAD + 0.5 * DEPTH) / DEPTH, 0.0, STEPS + 1.0) * RISER * climbing
     position = np.column_stack([x, np.full(rows, y), ground + height])
     velocity = np.tile([0.1, 0.0, 0.0], (rows, 1))
     time = 0.2 * np.arange(rows)
