@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]  # its wheel adds a .pth
 import trimesh
-from make_talos import FOOT_HALF_SIZE, KNEE, LEG, MOST_TILT, SOLE_IN_ANKLE
-from make_talos import find_urdf, rounded
+from make_talos import FOOT_HALF_SIZE, KNEE, LEG, MOST_TILT, SOLE_IN_ANKLE, find_urdf, rounded
 from scipy.spatial import ConvexHull
 
 from jaxleas.files import write_json

@@ -51,8 +51,8 @@ class Shard:
         found = content.get("provenance") if isinstance(content, dict) else None
         if found != self.provenance:
             raise InputError(
-                f"{self.out} holds verdicts made {_difference(found, self.provenance)}; give another "
-                "--out, or remove that folder"
+                f"{self.out} holds verdicts made {_difference(found, self.provenance)}; give "
+                "another --out, or remove that folder"
             )
         return True
 

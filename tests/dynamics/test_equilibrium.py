@@ -106,7 +106,9 @@ def test_agrees_with_the_definition_on_random_stances():
 def test_walls_on_both_sides_go_to_the_general_solver_and_agree():
     # A chimney: hands push outwards, and the generators have no common half-space along their sum.
     points = np.array([[0.0, s * 0.5, 1.0 + dz] for s in (1, -1) for dz in (0.1, -0.1)])
-    points = np.concatenate([points + [0.1, 0, 0], points - [0.1, 0, 0]])
+    points = np.concatenate(
+        [points + np.array([0.1, 0.0, 0.0]), points - np.array([0.1, 0.0, 0.0])]
+    )
     normals = np.array([[0.0, -np.sign(p[1]), 0.0] for p in points])
     com = np.array([0.0, 0.0, 0.9])
     # n x e_y vanishes here: the other basis.

@@ -1,6 +1,7 @@
 """Which samples of the data base come close to a surface from a root pose? (T 4.1.2)"""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -78,7 +79,7 @@ def near_candidates(world: World, aim: Aim) -> Candidates:
     score = HEURISTICS[world.settings.heuristic](world.database, wish)
     bounds = np.searchsorted(row, np.arange(len(aim) + 1))
     orders, ranks = [], []
-    for first, last in zip(bounds[:-1], bounds[1:], strict=True):
+    for first, last in pairwise(bounds):
         order = np.argsort(-score[first:last], kind="stable")[: sum(world.settings.stages)]
         orders.append(order + first)
         ranks.append(np.arange(len(order)))
