@@ -34,6 +34,7 @@ COMMANDS = {
     "plan": ("jaxleas.contacts.commands", "plan", "plan the contacts of a problem file"),
     "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
     "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
+    "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 

@@ -18,7 +18,8 @@ class _BraxShell(ModuleType):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or self.__spec__ is None or self.__spec__.loader is None:
             raise AttributeError(name)
-        self.__class__ = ModuleType  # from here on the package is an ordinary one
+        # From here on the package is an ordinary one.
+        object.__setattr__(self, "__class__", ModuleType)
         self.__spec__.loader.exec_module(self)
         return getattr(self, name)
 
@@ -39,12 +40,14 @@ if "brax" not in sys.modules:
 
 from brax.training.acme import running_statistics, specs  # noqa: E402
 from brax.training.agents.ppo import losses  # noqa: E402
+from brax.training.agents.ppo import networks as _networks  # noqa: E402
 from brax.training.agents.ppo.losses import compute_ppo_loss  # noqa: E402
-from brax.training.agents.ppo.networks import PPONetworks, make_ppo_networks  # noqa: E402
+from brax.training.agents.ppo.networks import PPONetworks  # noqa: E402
 from brax.training.networks import ACTIVATION  # noqa: E402
 from brax.training.types import Transition as _Transition  # noqa: E402
 
-# Any pytree may fill these two; Brax's annotations say "an array" and type checkers believe them.
+# Any pytree may pass through these; Brax's annotations say "an array", and checkers believe them.
+make_ppo_networks: Any = _networks.make_ppo_networks
 PPONetworkParams: Any = losses.PPONetworkParams
 Transition: Any = _Transition
 

@@ -96,7 +96,7 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
             logits = networks.policy_network.apply(
                 state.normaliser, state.params.policy, observation
             )
-            normal = distribution.create_dist(logits)
+            normal: Any = distribution.create_dist(logits)
             raw_action = normal.loc + normal.scale * noise_now
             action = distribution.postprocess(raw_action)
             after, outcome = env.step(world.atlas, weights, episode, action)

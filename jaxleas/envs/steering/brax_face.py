@@ -9,13 +9,17 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from brax.envs.base import Env, State, Wrapper
+from brax.envs import base
+from brax.envs.base import Env, Wrapper
 from brax.envs.wrappers.training import VmapWrapper
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
+
+# A flax dataclass, which type checkers do not see through.
+State: Any = base.State
 
 CANDIDATES = 8  # starts drawn at a reset; the first valid one is taken
 
@@ -32,7 +36,7 @@ class BraxSteering(Env):
         self.world = world
         self._weights = RewardParams.of(env.config.reward)
 
-    def reset(self, rng: jax.Array) -> State:
+    def reset(self, rng: jax.Array) -> Any:
         """Draw terrain, start, heading and goal, and stand there."""
         pool_key, take_key, next_key = jax.random.split(rng, 3)
         pool = draw_starts(self.steering, self.world, pool_key, CANDIDATES)
@@ -42,7 +46,7 @@ class BraxSteering(Env):
         info = {"next_start": next_key, "truncation": zero, "margin": zero}
         return State(state, observation, zero, zero, {"reached": zero}, info)
 
-    def step(self, state: State, action: jax.Array) -> State:
+    def step(self, state: Any, action: jax.Array) -> Any:
         """Advance one time step; `done` is set where the episode failed and where it is cut."""
         after, outcome = self.steering.step(
             self.world.atlas, self._weights, state.pipeline_state, action
@@ -80,20 +84,20 @@ class FreshStartWrapper(Wrapper):
     Brax's `AutoResetWrapper` puts each environment back to the one start it cached, for ever.
     """
 
-    def reset(self, rng: jax.Array) -> State:
+    def reset(self, rng: jax.Array) -> Any:
         """Reset a batch of environments and count their episodes' steps."""
-        state = self.env.reset(rng)
+        state: Any = self.env.reset(rng)
         return state.replace(info=state.info | {"steps": jnp.zeros(state.done.shape)})
 
-    def step(self, state: State, action: jax.Array) -> State:
+    def step(self, state: Any, action: jax.Array) -> Any:
         """Step; where the episode before was over, step from a fresh start instead."""
         state = self._restart(state)
         steps = state.info["steps"] + 1.0
-        after = self.env.step(state, action)
+        after: Any = self.env.step(state, action)
         return after.replace(info=after.info | {"steps": steps})
 
-    def _restart(self, state: State) -> State:
-        fresh = self.env.reset(state.info["next_start"])
+    def _restart(self, state: Any) -> Any:
+        fresh: Any = self.env.reset(state.info["next_start"])
         done = state.done.astype(bool)
 
         def pick(new: jax.Array, old: jax.Array) -> jax.Array:

@@ -1,0 +1,221 @@
+"""Make one contact with one foot while the other stands: candidates, projection, tests."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.contacts.sampling.candidates import Aim, Candidates, near_candidates
+from jaxleas.contacts.sampling.database import align
+from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
+from jaxleas.contacts.sampling.limbs import (
+    SIDES,
+    PlacedLegs,
+    body_moments,
+    legs_collide,
+    place_legs,
+    rotations_to_world,
+    to_world,
+)
+from jaxleas.contacts.sampling.stance import Stances, support_corners
+from jaxleas.contacts.sampling.two_point import com_exists
+from jaxleas.contacts.sampling.world import World
+from jaxleas.robots.leg_kinematics import mass_moment
+
+_ROBUSTNESS_AT_FIRST = 3  # of the candidates that pass all else
+
+
+@dataclass(frozen=True)
+class Created:
+    """New contacts, one row a robot.
+
+    Attributes:
+        found: whether there is one; the rest of the row means nothing where not.
+        stances: with the new contact in the place of the old.
+        com: centre of mass of the new posture in the world [m].
+    """
+
+    found: Bool[np.ndarray, " N"]
+    stances: Stances
+    com: Float[np.ndarray, "N 3"]
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """Candidates that passed all but the robustness, best first within a row."""
+
+    row: Int[np.ndarray, " M"]
+    sole: Float[np.ndarray, "M 3"]
+    rotation: Float[np.ndarray, "M 3 3"]
+    surface: Int[np.ndarray, " M"]
+    corners: Float[np.ndarray, "M 4 3"]
+    moment: Float[np.ndarray, "M 3"]
+
+    def __getitem__(self, which) -> "_Tried":
+        return _Tried(
+            self.row[which],
+            self.sole[which],
+            self.rotation[which],
+            self.surface[which],
+            self.corners[which],
+            self.moment[which],
+        )
+
+
+def create_contacts(
+    world: World,
+    aim: Aim,
+    stances: Stances,
+    order: Int[np.ndarray, " N"],
+    *,
+    least_move: float = 0.0,
+) -> Created:
+    """Give the moving foot of each robot the best new contact that passes every test.
+
+    In order of cost: it projects onto the surface within the joint limits, the leg touches neither
+    scene nor other leg, the two-point condition holds, and the posture's robustness is enough.
+
+    Args:
+        world: robot, scene, settings.
+        aim: the moving limbs, and where the roots are then.
+        stances: before the move; the other foot's contact is kept.
+        order: becomes `since` of the new contacts.
+        least_move: distance by which the contact must move [m].
+    """
+    count = len(aim)
+    each = np.arange(count)
+    standing = 1 - aim.limb
+    kept = place_legs(
+        world.legs,
+        aim.roots,
+        standing,
+        stances.sole[each, standing],
+        stances.rotation[each, standing],
+    )
+    result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros((count, 3)))
+    can_leave = _two_points(world, aim, stances, each, stances.sole[each, aim.limb],
+                            stances.rotation[each, aim.limb])  # fmt: skip
+    candidates = near_candidates(world, aim)
+    candidates = candidates[can_leave[candidates.row]]
+    start = 0
+    for stage in world.settings.stages:
+        chosen = (candidates.rank >= start) & (candidates.rank < start + stage)
+        chosen &= ~result.found[candidates.row]
+        start += stage
+        if chosen.any():
+            tried = _try(world, aim, stances, kept, candidates[chosen], least_move)
+            _take_first_robust(world, aim, kept, tried, order, result)
+        if result.found.all():
+            break
+    return result
+
+
+def _try(
+    world: World,
+    aim: Aim,
+    stances: Stances,
+    kept: PlacedLegs,
+    some: Candidates,
+    least_move: float,
+) -> _Tried:
+    """Return the candidates that pass all tests but robustness."""
+    database, ground = world.database, world.ground
+    roots, limb = aim.roots[some.row], aim.limb[some.row]
+    side, normal = SIDES[limb], ground.normals[some.surface]
+    sole = to_world(database.soles[some.sample], roots.yaw, side) + roots.position
+    above = (normal * sole).sum(axis=1) - ground.offsets[some.surface]
+    sole = sole + (world.settings.contact_lift - above)[:, None] * normal
+    rotation = align(rotations_to_world(database.rotations[some.sample], roots.yaw, side), normal)
+    placed = place_legs(world.legs, roots, limb, sole, rotation)
+    before = stances.sole[some.row, limb]
+    good = placed.reachable & (np.linalg.norm(sole - before, axis=1) >= least_move)
+    rows = np.flatnonzero(good)
+    rows = rows[~legs_collide(world.legs, placed, rows, ground, feet=True)]
+    rows = _clear_of_other_leg(world, placed, kept, some.row, rows)
+    rows = rows[_two_points(world, aim, stances, some.row[rows], sole[rows], rotation[rows])]
+    passed = placed[rows]
+    return _Tried(
+        row=some.row[rows],
+        sole=sole[rows],
+        rotation=rotation[rows],
+        surface=some.surface[rows],
+        corners=support_corners(
+            ground, sole[rows], rotation[rows], some.surface[rows], world.robot.foot_half_size
+        ),
+        moment=mass_moment(world.legs, passed.frames, passed.origins),
+    )
+
+
+def _take_first_robust(
+    world: World,
+    aim: Aim,
+    kept: PlacedLegs,
+    tried: _Tried,
+    order: np.ndarray,
+    result: Created,
+) -> None:
+    """Write the first robust candidate of each row into the result."""
+    resting = body_moments(world.legs, aim.roots)
+    resting = resting + mass_moment(world.legs, kept.frames, kept.origins)
+    rank = np.arange(len(tried.row)) - np.searchsorted(tried.row, tried.row)
+    for chosen in (rank < _ROBUSTNESS_AT_FIRST, rank >= _ROBUSTNESS_AT_FIRST):
+        some = tried[chosen & ~result.found[tried.row]]
+        if not len(some.row):
+            continue
+        limb = aim.limb[some.row]
+        stances = with_contact(result.stances[some.row], limb, some, order[some.row])
+        com = (resting[some.row] + some.moment) / world.legs.mass
+        good = np.flatnonzero(world.is_robust(stances, com))
+        row, first = np.unique(some.row[good], return_index=True)
+        first = good[first]
+        result.found[row] = True
+        result.com[row] = com[first]
+        put(result.stances, row, stances[first])
+
+
+def with_contact(
+    stances: Stances, limb: Int[np.ndarray, " N"], new: _Tried, order: Int[np.ndarray, " N"]
+) -> Stances:
+    """Return stances (a fresh copy is changed) with one contact replaced in each row."""
+    each = np.arange(len(limb))
+    stances = replace(stances)
+    stances.sole[each, limb], stances.rotation[each, limb] = new.sole, new.rotation
+    stances.surface[each, limb], stances.corners[each, limb] = new.surface, new.corners
+    stances.since[each, limb] = order
+    return stances
+
+
+def put(stances: Stances, rows: Int[np.ndarray, " M"], new: Stances) -> None:
+    """Write stances into rows of others."""
+    stances.sole[rows], stances.rotation[rows] = new.sole, new.rotation
+    stances.surface[rows], stances.corners[rows] = new.surface, new.corners
+    stances.since[rows] = new.since
+
+
+def _two_points(
+    world: World,
+    aim: Aim,
+    stances: Stances,
+    row: np.ndarray,
+    sole: np.ndarray,
+    rotation: np.ndarray,
+) -> Bool[np.ndarray, " M"]:
+    """Tell whether the centre of mass can be over the standing foot with the other at `sole`."""
+    standing = 1 - aim.limb[row]
+    return com_exists(
+        world.legs.com_in_foot,
+        stances.sole[row, standing],
+        stances.rotation[row, standing],
+        stances.corners[row, standing],
+        sole,
+        rotation,
+        SIDES[standing],
+    )
+
+
+def _clear_of_other_leg(
+    world: World, placed: PlacedLegs, kept: PlacedLegs, row: np.ndarray, chosen: np.ndarray
+) -> np.ndarray:
+    moving = leg_segments(world.legs, placed[chosen])
+    standing = leg_segments(world.legs, kept)[row[chosen]]
+    return chosen[~legs_touch(moving, standing)]

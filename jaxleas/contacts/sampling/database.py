@@ -1,0 +1,121 @@
+"""25,000 leg configurations, drawn once, to be searched at every step (T 4.1.2)."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.dynamics.vectors import cross
+from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
+from jaxleas.robots.legs import LegModel, load_talos_legs
+
+_TILTS = np.deg2rad([[0.0, 0.0], [12.0, 0.0], [-12.0, 0.0], [0.0, 12.0], [0.0, -12.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class LegDatabase:
+    """Configurations of the left leg whose foot can be laid on walkable ground, by height.
+
+    Attributes:
+        legs: whose configurations these are.
+        drawn: number of configurations drawn, those of no use on walkable ground included.
+        angles: of the joints [rad].
+        soles: in the root frame, in order of z [m].
+        rotations: of the feet in the root frame.
+        manipulability: |det J|, as a share of the largest.
+        translation: J_v J_v^T of the sole's Jacobian [m^2], for the EFORT score.
+        reach: largest horizontal distance of a sole from the root [m].
+        heights: z of the soles, ascending [m].
+        homogeneous: the soles as columns (x, y, z, 1).
+    """
+
+    legs: LegModel
+    drawn: int
+    angles: Float[np.ndarray, "N 6"]
+    soles: Float[np.ndarray, "N 3"]
+    rotations: Float[np.ndarray, "N 3 3"]
+    manipulability: Float[np.ndarray, " N"]
+    translation: Float[np.ndarray, "N 3 3"]
+    reach: float
+    heights: Float[np.ndarray, " N"]
+    homogeneous: Float[np.ndarray, "4 N"]
+
+    def __len__(self) -> int:
+        """Return the number of configurations kept."""
+        return len(self.angles)
+
+
+@lru_cache(maxsize=4)
+def talos_database(samples: int, seed: int) -> LegDatabase:
+    """Return Talos's data base of `samples` configurations, made once for each process."""
+    return make_database(load_talos_legs(), samples, seed)
+
+
+def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
+    """Draw configurations uniformly within the joint limits; the first is the reference.
+
+    Kept are those whose foot, where it is, can be laid on ground within 12 degrees of level by the
+    smallest rotation without leaving the joint limits: nothing else passes the projection later.
+
+    Args:
+        legs: the model.
+        samples: to draw.
+        seed: of the draw.
+    """
+    angles = np.random.default_rng(seed).uniform(legs.lower, legs.upper, (samples, 6))
+    angles[0] = legs.reference
+    posture = leg_posture(legs, angles)
+    usable = np.zeros(samples, dtype=bool)
+    for x, y in _TILTS:
+        normal = np.array([np.sin(x), np.sin(y), 0.0])
+        normal[2] = np.sqrt(1.0 - normal @ normal)
+        aligned = align(posture.foot, np.broadcast_to(normal, (samples, 3)))
+        usable |= leg_angles(legs, posture.sole, aligned)[1]
+    kept = np.flatnonzero(usable)
+    kept = kept[np.argsort(posture.sole[kept, 2], kind="stable")]
+    jacobian = sole_jacobian(legs, angles[kept])
+    manipulability = np.abs(np.linalg.det(jacobian))
+    linear = jacobian[:, :3]
+    soles = posture.sole[kept]
+    return LegDatabase(
+        legs=legs,
+        drawn=samples,
+        angles=angles[kept],
+        soles=soles,
+        rotations=posture.foot[kept],
+        manipulability=manipulability / max(float(manipulability.max(initial=0.0)), 1e-12),
+        translation=linear @ linear.transpose(0, 2, 1),
+        reach=float(np.linalg.norm(soles[:, :2], axis=1).max(initial=0.0)),
+        heights=soles[:, 2].copy(),
+        homogeneous=np.concatenate([soles.T, np.ones((1, len(soles)))]),
+    )
+
+
+def sole_jacobian(legs: LegModel, angles: Float[np.ndarray, "N 6"]) -> Float[np.ndarray, "N 6 6"]:
+    """Return velocity over turn rate of the sole for each joint's speed [m/s and rad/s].
+
+    Column j is (a_j x (sole - o_j); a_j) for the joint's axis a_j through o_j.
+    """
+    posture = leg_posture(legs, angles)
+    about = np.array([2, 0, 1, 1, 1, 0])  # each joint's own axis, a column of its frame
+    axes = posture.frames[:, np.arange(6), :, about].transpose(1, 0, 2)
+    arms = posture.sole[:, None] - posture.origins
+    linear = cross(axes, arms)
+    return np.concatenate([linear, axes], axis=2).transpose(0, 2, 1)
+
+
+def align(
+    rotations: Float[np.ndarray, "N 3 3"], normals: Float[np.ndarray, "N 3"]
+) -> Float[np.ndarray, "N 3 3"]:
+    """Turn each rotation by the smallest angle that brings its third column to a normal.
+
+    R' = (I + [v] + [v]^2 / (1 + m . n)) R with v = m x n, m the third column.
+    """
+    columns = rotations.transpose(0, 2, 1)  # rows are now the columns
+    third = columns[:, 2]
+    cosine = (third * normals).sum(axis=1)[:, None, None]
+    v = cross(third, normals)[:, None]
+    once = cross(v, columns)
+    twice = cross(v, once)
+    return (columns + once + twice / np.maximum(1.0 + cosine, 1e-9)).transpose(0, 2, 1)

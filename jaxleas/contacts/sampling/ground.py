@@ -1,0 +1,93 @@
+"""A scene's polygons as arrays: what feet stand on and legs bump into."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.geometry.intersections import pack_polygons
+from jaxleas.terrain.polygons import polygon_area_vector
+from jaxleas.terrain.scene import Scene
+from jaxleas.types.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Convex polygons, surfaces first.
+
+    Attributes:
+        names: of the polygons.
+        walkable: how many of them, from the first, are surfaces.
+        vertices: padded by repeating the last one [m].
+        normals: unit.
+        offsets: of the planes: n . x = offset [m].
+        inward: unit normals of the edges in the polygon's plane; zero where padded.
+        inward_offsets: x lies inside where inward . x >= inward_offset for all edges [m].
+        low: corners of bounding boxes [m].
+        high: likewise [m].
+    """
+
+    names: tuple[str, ...]
+    walkable: int
+    vertices: Float[np.ndarray, "P W 3"]
+    normals: Float[np.ndarray, "P 3"]
+    offsets: Float[np.ndarray, " P"]
+    inward: Float[np.ndarray, "P W 3"]
+    inward_offsets: Float[np.ndarray, "P W"]
+    low: Float[np.ndarray, "P 3"]
+    high: Float[np.ndarray, "P 3"]
+
+    def inside(
+        self, points: Float[np.ndarray, "N 3"], polygon: Int[np.ndarray, " N"]
+    ) -> Bool[np.ndarray, " N"]:
+        """Tell which points, seen along the normal of their polygon, lie inside it."""
+        distance = (self.inward[polygon] @ points[:, :, None])[:, :, 0]
+        return np.all(distance >= self.inward_offsets[polygon], axis=1)
+
+    def heights_at(self, points_xy: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N S"]:
+        """Return the height of each surface over each point [m]; NaN beside it."""
+        count = self.walkable
+        normals, offsets = self.normals[:count], self.offsets[:count]
+        heights = (offsets - points_xy @ normals[:, :2].T) / normals[:, 2]
+        points = np.concatenate(
+            [np.broadcast_to(points_xy[:, None], (*heights.shape, 2)), heights[..., None]], axis=2
+        )
+        distance = np.einsum("swk,nsk->nsw", self.inward[:count], points)
+        return np.where((distance >= self.inward_offsets[:count]).all(axis=2), heights, np.nan)
+
+
+def ground_of(scene: Scene) -> Ground:
+    """Return a scene's surfaces and obstacles as arrays.
+
+    Raises:
+        InputError: the scene has no surface to stand on.
+    """
+    if not scene.surfaces:
+        raise InputError("this scene has no surfaces: nothing can stand anywhere")
+    return ground_from(
+        (*scene.surfaces.items(), *scene.obstacles.items()), walkable=len(scene.surfaces)
+    )
+
+
+def ground_from(polygons: Iterable[tuple[str, np.ndarray]], walkable: int) -> Ground:
+    """Return named polygons, the first `walkable` of them surfaces, as arrays."""
+    named = list(polygons)
+    vertices = pack_polygons([polygon for _, polygon in named])
+    areas = np.array([polygon_area_vector(np.asarray(polygon)) for _, polygon in named])
+    normals = areas / np.linalg.norm(areas, axis=1, keepdims=True)
+    edges = np.roll(vertices, -1, axis=1) - vertices
+    inward = np.cross(normals[:, None], edges)
+    length = np.linalg.norm(inward, axis=2, keepdims=True)
+    inward = np.where(length > 1e-9, inward / np.maximum(length, 1e-9), 0.0)
+    return Ground(
+        names=tuple(name for name, _ in named),
+        walkable=walkable,
+        vertices=vertices,
+        normals=normals,
+        offsets=(normals * vertices[:, 0]).sum(axis=1),
+        inward=inward,
+        inward_offsets=(inward * vertices).sum(axis=2),
+        low=vertices.min(axis=1),
+        high=vertices.max(axis=1),
+    )

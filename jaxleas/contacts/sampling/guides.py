@@ -1,0 +1,139 @@
+"""Guide paths as the planner walks them: one configuration in five, and what lies ahead."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.contacts.sampling.box_collision import boxes_meet_ground
+from jaxleas.contacts.sampling.candidates import Aim
+from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
+from jaxleas.contacts.sampling.world import World
+from jaxleas.robots.leg_kinematics import leg_posture
+from jaxleas.types import GuidePath, InputError
+
+MOST_COORDINATE = 1e4  # a guide path further out [m] is given in other units
+
+
+@dataclass(frozen=True, eq=False)
+class KeptGuides:
+    """The kept configurations of several guide paths, padded with the last of each.
+
+    Attributes:
+        index: of each configuration in its guide path.
+        length: number of configurations of each path.
+        roots: position and yaw, `[B * T]` rows.
+        ahead: the roots some time later, likewise.
+        direction: unit vector of the motion in the world, zero at a stand; likewise.
+        trunk_free: whether the trunk touches nothing.
+        reference_sole: of the left foot, in the root frame [m].
+    """
+
+    index: Int[np.ndarray, "B T"]
+    length: Int[np.ndarray, " B"]
+    roots: Roots
+    ahead: Roots
+    direction: Float[np.ndarray, "rows 3"]
+    trunk_free: Bool[np.ndarray, "B T"]
+    reference_sole: Float[np.ndarray, " 3"]
+
+    def flat(self, guide: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """Return the rows of configurations `at` of guide paths `guide`."""
+        return guide * self.index.shape[1] + at
+
+    def aim(self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray) -> Aim:
+        """Return what a moving foot is wanted to do at a configuration."""
+        rows = self.flat(guide, at)
+        roots, ahead, side = self.roots[rows], self.ahead[rows], SIDES[limb]
+        reference = np.broadcast_to(self.reference_sole, (len(rows), 3))
+        target = to_world(reference, ahead.yaw, side) + ahead.position
+        return Aim(
+            roots,
+            limb,
+            to_left_root(target - roots.position, roots.yaw, side),
+            to_left_root(self.direction[rows], roots.yaw, side),
+        )
+
+
+def keep_configurations(world: World, guide_paths: Sequence[GuidePath]) -> KeptGuides:
+    """Keep every N-th configuration, and the last, and judge the trunk at each.
+
+    Args:
+        world: robot, scene, settings.
+        guide_paths: at least one.
+
+    Raises:
+        InputError: a path is empty or holds numbers that are not finite.
+    """
+    settings = world.settings
+    kept = []
+    for number, path in enumerate(guide_paths):
+        require_usable(path, number)
+        index = np.arange(0, len(path), settings.keep_every)
+        kept.append(index if index[-1] == len(path) - 1 else np.append(index, len(path) - 1))
+    length = np.array([len(index) for index in kept])
+    widest = int(length.max())
+    index = np.stack([np.pad(each, (0, widest - len(each)), mode="edge") for each in kept])
+    position, yaw, later, later_yaw, direction = [], [], [], [], []
+    for path, rows in zip(guide_paths, index, strict=True):
+        turned = np.unwrap(np.asarray(path.yaw, dtype=np.float64))
+        places = np.asarray(path.position, dtype=np.float64)
+        time = np.asarray(path.time, dtype=np.float64)
+        then = time[rows] + settings.look_ahead
+        position.append(places[rows])
+        yaw.append(turned[rows])
+        later.append(np.stack([np.interp(then, time, places[:, k]) for k in range(3)], axis=1))
+        later_yaw.append(np.interp(then, time, turned))
+        ahead = places[np.minimum(rows + 1, len(path) - 1)] - places[np.maximum(rows - 1, 0)]
+        speed = np.linalg.norm(ahead, axis=1, keepdims=True)
+        direction.append(np.where(speed > 1e-6, ahead / np.maximum(speed, 1e-6), 0.0))
+    roots = Roots(np.concatenate(position), np.concatenate(yaw))
+    return KeptGuides(
+        index=index,
+        length=length,
+        roots=roots,
+        ahead=Roots(np.concatenate(later), np.concatenate(later_yaw)),
+        direction=np.concatenate(direction),
+        trunk_free=trunk_is_free(world, roots).reshape(index.shape),
+        reference_sole=leg_posture(world.legs, world.legs.reference).sole,
+    )
+
+
+def trunk_is_free(world: World, roots: Roots) -> Bool[np.ndarray, " N"]:
+    """Tell at which root poses no box of the trunk touches the scene."""
+    free = np.ones(len(roots), dtype=bool)
+    ones = np.ones(len(roots))
+    turn = rotations_to_world(np.broadcast_to(np.eye(3), (len(roots), 3, 3)), roots.yaw, ones)
+    for box in world.robot.trunk:
+        low, high = np.asarray(box.low), np.asarray(box.high)
+        middle = np.broadcast_to(0.5 * (low + high), (len(roots), 3))
+        centre = to_world(middle, roots.yaw, ones) + roots.position
+        half = np.broadcast_to(0.5 * (high - low), (len(roots), 3))
+        free &= ~boxes_meet_ground(centre, turn, half, world.ground)
+    return free
+
+
+def require_usable(path: GuidePath, number: int) -> None:
+    """Refuse a guide path that cannot be walked along.
+
+    Raises:
+        InputError: says which path, and what is wrong with it.
+    """
+    rows = len(path.time)
+    where = f"guide path {number}"
+    if rows == 0:
+        raise InputError(f"{where} has no configuration; it needs at least one")
+    shapes = np.shape(path.position), np.shape(path.yaw)
+    if shapes != ((rows, 3), (rows,)):
+        raise InputError(
+            f"{where}: position {shapes[0]} and yaw {shapes[1]} do not fit its {rows} times"
+        )
+    for name in ("time", "position", "yaw"):
+        values = np.asarray(getattr(path, name))
+        if not np.isfinite(values).all() or np.abs(values).max() > MOST_COORDINATE:
+            raise InputError(
+                f"{where}: {name} holds numbers that are not finite or beyond {MOST_COORDINATE:g}"
+            )
+    if (np.diff(path.time) < 0).any():
+        raise InputError(f"{where}: time runs backwards; give configurations in order of time")

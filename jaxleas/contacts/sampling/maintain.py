@@ -1,0 +1,70 @@
+"""Keep the contacts while the root moves on: within reach, clear of everything, robust?"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
+from jaxleas.contacts.sampling.limbs import (
+    Roots,
+    body_moments,
+    legs_collide,
+    place_legs,
+)
+from jaxleas.contacts.sampling.stance import LIMBS, Stances
+from jaxleas.contacts.sampling.world import World
+from jaxleas.robots.leg_kinematics import mass_moment
+
+
+@dataclass(frozen=True)
+class Maintained:
+    """Contacts kept at new root poses, one row a robot.
+
+    Attributes:
+        limb: whether each leg alone can keep its contact.
+        both: whether the posture as a whole stands: legs clear of each other, robust.
+        com: centre of mass in the world [m].
+    """
+
+    limb: Bool[np.ndarray, "N 2"]
+    both: Bool[np.ndarray, " N"]
+    com: Float[np.ndarray, "N 3"]
+
+
+def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintained:
+    """Judge the same contacts at other root poses.
+
+    The trunk's collisions depend on the guide path alone and are judged beforehand; the feet have
+    not moved since they were judged.
+
+    Args:
+        world: robot, scene, settings.
+        roots: where the robots would be.
+        stances: their contacts.
+    """
+    count = len(roots)
+    limb = np.tile(np.arange(LIMBS), count)
+    pair = np.repeat(np.arange(count), LIMBS)
+    placed = place_legs(
+        world.legs,
+        roots[pair],
+        limb,
+        stances.sole.reshape(-1, 3),
+        stances.rotation.reshape(-1, 3, 3),
+    )
+    kept = placed.reachable.copy()
+    rows = np.flatnonzero(kept)
+    if len(rows):
+        kept[rows] = ~legs_collide(world.legs, placed, rows, world.ground, feet=False)
+    kept = kept.reshape(count, LIMBS)
+    segments = leg_segments(world.legs, placed).reshape(count, LIMBS, 2, 2, 3)
+    both = kept.all(axis=1) & ~legs_touch(segments[:, 0], segments[:, 1])
+    moments = (
+        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, LIMBS, 3).sum(axis=1)
+    )
+    com = (body_moments(world.legs, roots) + moments) / world.legs.mass
+    rows = np.flatnonzero(both)
+    if len(rows):
+        both[rows] = world.is_robust(stances[rows], com[rows])
+    return Maintained(kept, both, com)

@@ -1,0 +1,62 @@
+"""What the sampling-based planner answers for one guide path."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float, Int
+
+How = Literal["start", "kept", "stepped", "repositioned"]
+
+
+@dataclass(frozen=True, eq=False)
+class SamplingPlan:
+    """Postures in double support along a guide path, and how far they got.
+
+    Attributes:
+        success: whether the last configuration was reached.
+        reason: what stopped the plan, a sentence; empty on success.
+        last_index: of the last configuration reached in the guide path; -1 if none.
+        last_kept: likewise among the kept configurations.
+        kept: number of kept configurations.
+        index: of each posture's configuration in the guide path.
+        how: each posture came about.
+        moved: limb that was moved for each posture; -1 for none (or both, at the start).
+        soles: of left and right foot, in the world [m].
+        rotations: of the feet in the world.
+        surfaces: names of the surfaces of left and right foot.
+        com: centre of mass in the world [m].
+        robustness: of equilibrium [N].
+        repositions: how many postures are.
+        seconds: spent on this guide path, an equal share where several were planned together.
+    """
+
+    success: bool
+    reason: str
+    last_index: int
+    last_kept: int
+    kept: int
+    index: Int[np.ndarray, " S"]
+    how: tuple[How, ...]
+    moved: Int[np.ndarray, " S"]
+    soles: Float[np.ndarray, "S 2 3"]
+    rotations: Float[np.ndarray, "S 2 3 3"]
+    surfaces: tuple[tuple[str, str], ...]
+    com: Float[np.ndarray, "S 3"]
+    robustness: Float[np.ndarray, " S"]
+    repositions: int
+    seconds: float
+
+    def __len__(self) -> int:
+        """Return the number of postures."""
+        return len(self.index)
+
+    @property
+    def reached(self) -> float:
+        """Share of the guide path that was reached (T 4.1.4)."""
+        return (self.last_kept + 1) / self.kept
+
+    @property
+    def steps(self) -> int:
+        """Number of contacts made after the start."""
+        return int((self.moved >= 0).sum())

@@ -1,0 +1,213 @@
+"""The sampling-based contact planner (T 4.1; Tonneau et al. 2018), for many guide paths at once.
+
+It follows a guide path exactly: from each kept configuration to the next, contacts are kept, or one
+is broken and made anew, or, where that fails, one is repositioned at the configuration before.
+Guide paths are walked abreast, each at its own pace, so that NumPy works on all of them together.
+"""
+
+from collections.abc import Sequence
+from time import perf_counter
+
+import numpy as np
+
+from jaxleas.contacts.sampling.create import Created, create_contacts, put
+from jaxleas.contacts.sampling.diary import Diary
+from jaxleas.contacts.sampling.first_stance import first_stances
+from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations
+from jaxleas.contacts.sampling.maintain import maintain_contacts
+from jaxleas.contacts.sampling.plan import SamplingPlan
+from jaxleas.contacts.sampling.settings import SamplingSettings
+from jaxleas.contacts.sampling.world import World, talos_world
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath
+
+_LOOK = 3  # configurations at which contacts are judged together; most are kept that long
+_ABREAST = 64  # guide paths walked together: more does not fit the cache
+
+
+def plan_contacts(
+    scene: Scene, guide_path: GuidePath, settings: SamplingSettings | None = None
+) -> SamplingPlan:
+    """Plan Talos's contacts along one guide path.
+
+    Args:
+        scene: surfaces to stand on, obstacles to stay clear of.
+        guide_path: to be followed exactly.
+        settings: of the planner; the published ones by default.
+
+    Raises:
+        InputError: the guide path or the scene cannot be used.
+    """
+    return plan_many(scene, [guide_path], settings)[0]
+
+
+def plan_many(
+    scene: Scene, guide_paths: Sequence[GuidePath], settings: SamplingSettings | None = None
+) -> list[SamplingPlan]:
+    """Plan Talos's contacts along several guide paths over one scene, in one process.
+
+    Every plan is the one that `plan_contacts` makes.
+    """
+    world = talos_world(scene, settings or SamplingSettings())
+    plans: list[SamplingPlan] = []
+    for first in range(0, len(guide_paths), _ABREAST):
+        plans += _Walk(world, guide_paths[first : first + _ABREAST]).plans()
+    return plans
+
+
+class _Walk:
+    """Guide paths walked abreast.
+
+    `at` is each path's configuration reached, `failures` those in a row, `reason` what stopped it.
+    """
+
+    def __init__(self, world: World, guide_paths: Sequence[GuidePath]) -> None:
+        self.begun = perf_counter()
+        self.world = world
+        self.guides: KeptGuides = keep_configurations(world, guide_paths)
+        count = len(guide_paths)
+        self.at = np.zeros(count, dtype=np.int64)
+        self.failures = np.zeros(count, dtype=np.int64)
+        self.repositions = np.zeros(count, dtype=np.int64)
+        self.order = np.full(count, 2)
+        self.live = np.ones(count, dtype=bool)
+        self.reasons = [""] * count
+        self.diary = Diary()
+
+    def plans(self) -> list[SamplingPlan]:
+        """Walk all paths to their ends."""
+        self._start()
+        while self.live.any():
+            blocked, can_stay = self._go_on()
+            if len(blocked):
+                failed = self._step(blocked, can_stay)
+                self._reposition(failed)
+        return self.diary.plans(self.world, self.guides, self.reasons, self.begun)
+
+    def _start(self) -> None:
+        first = first_stances(self.world, self.guides)
+        self.stances = first.stances
+        free = self.guides.trunk_free[:, 0]
+        self._stop(np.flatnonzero(~free), "the trunk touches the scene at the first configuration")
+        self._stop(
+            np.flatnonzero(free & ~first.found),
+            "no robust stance with both feet exists at the first configuration",
+        )
+        good = np.flatnonzero(first.found & free)
+        self.diary.write(
+            "start", good, self.at[good], -1, self.stances[good], first.com[good]
+        )  # fmt: skip
+        self._finish(good)
+
+    def _go_on(self) -> tuple[np.ndarray, np.ndarray]:
+        """Keep all contacts as long as that goes; return who is blocked, and the legs that stay."""
+        walking = np.flatnonzero(self.live)
+        ahead = self.at[walking, None] + 1 + np.arange(_LOOK)
+        exists = ahead < self.guides.length[walking, None]
+        row, look = np.nonzero(exists)
+        guide, at = walking[row], ahead[row, look]
+        kept = maintain_contacts(
+            self.world, self.guides.roots[self.guides.flat(guide, at)], self.stances[guide]
+        )
+        good = np.zeros(exists.shape, dtype=bool)
+        good[row, look] = kept.both & self.guides.trunk_free[guide, at]
+        good = np.logical_and.accumulate(good, axis=1)
+        taken = good[row, look]
+        self.diary.write(
+            "kept", guide[taken], at[taken], -1, self.stances[guide[taken]],
+            kept.com[taken],
+        )  # fmt: skip
+        progress = good.sum(axis=1)
+        self.at[walking] += progress
+        self.failures[walking[progress > 0]] = 0
+        self._finish(walking)
+        stuck = (progress < _LOOK) & self.live[walking]
+        position = np.zeros(exists.shape, dtype=np.int64)
+        position[row, look] = np.arange(len(row))
+        where = position[np.flatnonzero(stuck), progress[stuck]]
+        blocked, can_stay = walking[stuck], kept.limb[where]
+        free = self.guides.trunk_free[blocked, self.at[blocked] + 1]
+        self._stop(blocked[~free], "the trunk touches the scene at the next configuration")
+        return blocked[free], can_stay[free]
+
+    def _step(self, blocked: np.ndarray, can_stay: np.ndarray) -> np.ndarray:
+        """Break one contact, the oldest first, and make it anew; return who could not."""
+        pending = np.arange(len(blocked))
+        for turn in range(2):
+            limb = self._by_age(blocked[pending], turn)
+            pending_now = can_stay[pending, 1 - limb]
+            rows, limb = pending[pending_now], limb[pending_now]
+            if len(rows):
+                guide = blocked[rows]
+                made = self._create(guide, self.at[guide] + 1, limb, 0.0)
+                done = self._accept("stepped", guide, limb, made, self.at[guide] + 1)
+                self.failures[guide[done]] = 0
+                pending = np.setdiff1d(pending, rows[done], assume_unique=True)
+        self._finish(blocked)
+        return blocked[pending]
+
+    def _reposition(self, failed: np.ndarray) -> None:
+        """Move one foot at the configuration reached, the oldest contact first."""
+        self.failures[failed] += 1
+        settings = self.world.settings
+        enough = self.failures[failed] >= settings.max_tries
+        self._stop(
+            failed[enough],
+            "neither foot finds a contact that leads on to the next configuration, nor after "
+            "repositioning",
+        )
+        many = ~enough & (self.repositions[failed] >= settings.max_repositions)
+        self._stop(failed[many], f"more than {settings.max_repositions} repositions were needed")
+        pending = failed[~enough & ~many]
+        for turn in range(2):
+            if len(pending):
+                limb = self._by_age(pending, turn)
+                made = self._create(pending, self.at[pending], limb, settings.moved)
+                done = self._accept("repositioned", pending, limb, made, self.at[pending])
+                self.repositions[pending[done]] += 1
+                pending = pending[~done]
+        self._stop(
+            pending,
+            "neither foot finds a contact that leads on to the next configuration, nor can one be "
+            "repositioned",
+        )
+
+    def _by_age(self, guide: np.ndarray, turn: int) -> np.ndarray:
+        """Return the limb with the oldest contact (turn 0) or the newest (turn 1)."""
+        since = self.stances.since[guide]
+        oldest = (since[:, 1] < since[:, 0]).astype(np.int64)
+        return oldest if turn == 0 else 1 - oldest
+
+    def _create(
+        self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray, least_move: float
+    ) -> Created:
+        return create_contacts(
+            self.world,
+            self.guides.aim(guide, at, limb),
+            self.stances[guide],
+            self.order[guide],
+            least_move=least_move,
+        )
+
+    def _accept(self, how, guide: np.ndarray, limb: np.ndarray, made: Created, at: np.ndarray):
+        """Take what was found; return for which paths that is."""
+        done = made.found
+        rows = guide[done]
+        put(self.stances, rows, made.stances[done])
+        self.at[rows] = at[done]
+        self.order[rows] += 1
+        self.diary.write(
+            how, rows, self.at[rows], limb[done], self.stances[rows], made.com[done]
+        )  # fmt: skip
+        return done
+
+    def _finish(self, guide: np.ndarray) -> None:
+        self.live[guide[self.at[guide] >= self.guides.length[guide] - 1]] = False
+
+    def _stop(self, guide: np.ndarray, reason: str) -> None:
+        for each in guide:
+            self.live[each] = False
+            self.reasons[each] = (
+                f"stopped at configuration {self.guides.index[each, self.at[each]]} of the guide "
+                f"path: {reason}"
+            )

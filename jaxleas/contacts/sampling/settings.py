@@ -1,0 +1,38 @@
+"""What the sampling-based planner can be told (T 4.1.4)."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
+
+from jaxleas.types.strict import Strict
+
+Heuristic = Literal["fixed_step", "manipulability", "effort", "reference"]
+
+
+class SamplingSettings(Strict):
+    """Settings of the sampling-based planner; the defaults are the published ones for Talos."""
+
+    samples: Annotated[int, Field(ge=1, le=1_000_000)] = 25_000
+    """leg configurations in the data base"""
+    seed: NonNegativeInt = 0
+    """of the data base"""
+    keep_every: PositiveInt = 5
+    """one guide configuration in so many is planned for: 5 makes about 10 cm"""
+    heuristic: Heuristic = "fixed_step"
+    """by which candidates are tried, best first"""
+    look_ahead: PositiveFloat = 0.6
+    """fixed_step aims at the foot of the root this long ahead [s]"""
+    contact_distance: PositiveFloat = 0.02
+    """a sample nearer than this to a surface is a candidate for it [m]"""
+    contact_lift: PositiveFloat = 0.001
+    """gap between a standing sole and its surface [m]"""
+    least_robustness: float = 2.0
+    """every posture's robustness of equilibrium is at least this [N]"""
+    max_tries: PositiveInt = 2
+    """failures in a row, each but the last mended by a reposition, after which to stop"""
+    max_repositions: NonNegativeInt = 20
+    """of a whole plan"""
+    moved: PositiveFloat = 0.01
+    """a contact that moves by less counts as the same one [m]"""
+    stages: tuple[PositiveInt, ...] = (24, 200)
+    """so many candidates are tried together, then so many more, ..."""

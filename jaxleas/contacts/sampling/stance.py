@@ -1,0 +1,82 @@
+"""Both feet of many robots on the ground, and how well they stand."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from jaxleas.contacts.sampling.ground import Ground
+
+LIMBS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Stances:
+    """Contacts of left and right foot, one row a robot.
+
+    Attributes:
+        sole: position of the middle of the sole, in the world [m].
+        rotation: of the foot in the world; the third column is the surface's normal.
+        surface: index of the ground's polygon; -1 while there is none.
+        corners: of the part of the sole that is over its surface, in the world [m].
+        since: order in which contacts were made: the smaller, the older.
+    """
+
+    sole: Float[np.ndarray, "N 2 3"]
+    rotation: Float[np.ndarray, "N 2 3 3"]
+    surface: Int[np.ndarray, "N 2"]
+    corners: Float[np.ndarray, "N 2 4 3"]
+    since: Int[np.ndarray, "N 2"]
+
+    def __getitem__(self, rows) -> "Stances":
+        """Return some of the stances (a copy where `rows` are indices)."""
+        return Stances(
+            self.sole[rows],
+            self.rotation[rows],
+            self.surface[rows],
+            self.corners[rows],
+            self.since[rows],
+        )
+
+    def __len__(self) -> int:
+        """Return the number of robots."""
+        return len(self.sole)
+
+
+def no_stances(count: int) -> Stances:
+    """Return stances without contacts, to be written into."""
+    return Stances(
+        sole=np.zeros((count, LIMBS, 3)),
+        rotation=np.broadcast_to(np.eye(3), (count, LIMBS, 3, 3)).copy(),
+        surface=np.full((count, LIMBS), -1),
+        corners=np.zeros((count, LIMBS, 4, 3)),
+        since=np.zeros((count, LIMBS), dtype=np.int64),
+    )
+
+
+def support_corners(
+    ground: Ground,
+    sole: Float[np.ndarray, "N 3"],
+    rotation: Float[np.ndarray, "N 3 3"],
+    surface: Int[np.ndarray, " N"],
+    half_size: tuple[float, float],
+) -> Float[np.ndarray, "N 4 3"]:
+    """Return the sole's corners, each drawn in towards its middle until it is over the surface.
+
+    The four points span part of what really touches: never more than there is.
+
+    Args:
+        ground: the scene.
+        sole: middle of the sole, over the surface [m].
+        rotation: of the foot.
+        surface: that it stands on.
+        half_size: of the sole along x and y [m].
+    """
+    signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * half_size
+    reach = signs @ rotation[:, :, :2].transpose(0, 2, 1)  # [N, corner, 3]
+    inward = ground.inward[surface]  # [N, W, 3]
+    room = (inward @ sole[:, :, None])[:, :, 0] - ground.inward_offsets[surface]
+    outwards = -(reach @ inward.transpose(0, 2, 1))  # [N, corner, W]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(outwards > 1e-12, np.maximum(room, 0.0)[:, None] / outwards, 1.0)
+    return sole[:, None] + np.minimum(share.min(axis=2), 1.0)[:, :, None] * reach

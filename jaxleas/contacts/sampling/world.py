@@ -1,0 +1,74 @@
+"""All that a plan is made in and with: robot, data base, scene, settings."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from jaxleas.contacts.sampling.database import LegDatabase, talos_database
+from jaxleas.contacts.sampling.ground import Ground, ground_of
+from jaxleas.contacts.sampling.settings import SamplingSettings
+from jaxleas.contacts.sampling.stance import Stances
+from jaxleas.dynamics.equilibrium import equilibrium_robustness
+from jaxleas.dynamics.equilibrium_bound import decide_robustness
+from jaxleas.robots import Robot, load_talos
+from jaxleas.robots.legs import LegModel, load_talos_legs
+from jaxleas.terrain.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """Robot, data base, scene and settings.
+
+    Attributes:
+        robot: trunk boxes, friction, size of the soles.
+        legs: their kinematics and masses.
+        database: leg configurations.
+        ground: the scene's polygons.
+        settings: of the planner.
+    """
+
+    robot: Robot
+    legs: LegModel
+    database: LegDatabase
+    ground: Ground
+    settings: SamplingSettings
+
+    def robustness(
+        self, stances: Stances, com: Float[np.ndarray, "N 3"]
+    ) -> Float[np.ndarray, " N"]:
+        """Return the robustness of equilibrium of each posture [N]."""
+        points, normals = _contact_points(stances)
+        return equilibrium_robustness(
+            points, normals, com, mass=self.legs.mass, friction=self.robot.friction
+        )
+
+    def is_robust(self, stances: Stances, com: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"]:
+        """Tell which postures have the robustness that the settings ask for."""
+        points, normals = _contact_points(stances)
+        least = self.settings.least_robustness
+        mass, friction = self.legs.mass, self.robot.friction
+        robust, missing = decide_robustness(
+            points, normals, com, mass=mass, friction=friction, least=least
+        )
+        open_ = np.flatnonzero(~(robust | missing))
+        if len(open_):
+            robust[open_] = self.robustness(stances[open_], com[open_]) >= least
+        return robust
+
+
+def _contact_points(stances: Stances) -> tuple[np.ndarray, np.ndarray]:
+    count = len(stances)
+    normals = np.repeat(stances.rotation[..., 2], 4, axis=1)
+    return stances.corners.reshape(count, -1, 3), normals
+
+
+def talos_world(scene: Scene, settings: SamplingSettings) -> World:
+    """Return Talos in a scene."""
+    return World(
+        load_talos(),
+        load_talos_legs(),
+        talos_database(settings.samples, settings.seed),
+        ground_of(scene),
+        settings,
+    )

@@ -1,0 +1,165 @@
+"""Static equilibrium: how far a robot is from slipping and tipping over, for many at once."""
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.dynamics.equilibrium_lp import robustness_by_linear_program
+from jaxleas.dynamics.friction import friction_generators, margin_of_generator
+from jaxleas.dynamics.small_lp import maximise
+from jaxleas.dynamics.vectors import cross
+from jaxleas.types.errors import InputError
+
+GRAVITY = 9.81  # [m/s^2]
+_CERTIFIED = 1e-9  # how far a basis may miss primal or dual feasibility, relative to its size
+
+
+def equilibrium_robustness(
+    points: Float[np.ndarray, "*batch P 3"],
+    normals: Float[np.ndarray, "*batch P 3"],
+    com: Float[np.ndarray, "*batch 3"],
+    *,
+    mass: float,
+    friction: float,
+    acceleration: Float[np.ndarray, "*batch 3"] | None = None,
+) -> Float[np.ndarray, "*batch"]:
+    """Return the robustness of equilibrium [N]: positive inside, negative outside.
+
+    With the generators G of all contact points' friction cones, it is b0 |(sum_j g_j) x g_1| for
+
+        max b0  such that  G b = m [a - g; c x (a - g)],  b_i >= b0
+
+    (Del Prete et al. 2016, "Fast algorithms to test robust static equilibrium"; generators of one
+    point in the product). The dual of this has one variable for each dimension but one of the
+    wrench and is solved for the whole batch together. Every answer is certified: its basis must
+    be primal and dual feasible. What fails, or pulls at the robot from above, goes to HiGHS.
+
+    Args:
+        points: of contact, in the world [m].
+        normals: at the points, unit, away from the ground.
+        com: centre of mass in the world [m].
+        mass: of the robot [kg].
+        friction: mu, the same at all points [1].
+        acceleration: of the centre of mass [m/s^2]; none for static equilibrium.
+
+    Raises:
+        InputError: shapes disagree, or a number is not finite or out of range.
+    """
+    batch = _require(points, normals, com, mass, friction, acceleration)
+    flat_points = points.reshape(-1, *points.shape[-2:])
+    flat_normals = normals.reshape(flat_points.shape)
+    flat_com = com.reshape(-1, 3)
+    lift = np.array([0.0, 0.0, GRAVITY])
+    force = mass * (lift + (0.0 if acceleration is None else acceleration.reshape(-1, 3)))
+    force = np.broadcast_to(force, flat_com.shape)
+    wrenches = contact_wrenches(flat_points, flat_normals, flat_com, friction)
+    least, certified = _solve(wrenches, force)
+    for index in np.flatnonzero(~certified):
+        least[index] = robustness_by_linear_program(wrenches[index], force[index])
+    return (least * margin_of_generator(friction)).reshape(batch)
+
+
+def contact_wrenches(
+    points: Float[np.ndarray, "N P 3"],
+    normals: Float[np.ndarray, "N P 3"],
+    com: Float[np.ndarray, "N 3"],
+    friction: float,
+) -> Float[np.ndarray, "N 6 G"]:
+    """Return the wrench of each generator about the centre of mass: force over torque."""
+    forces = friction_generators(normals, friction)
+    arms = (points - com[:, None])[:, :, None]
+    torques = cross(arms, forces)
+    count = len(points)
+    wrenches = np.concatenate([forces.reshape(count, -1, 3), torques.reshape(count, -1, 3)], axis=2)
+    return wrenches.transpose(0, 2, 1)
+
+
+def _solve(
+    wrenches: Float[np.ndarray, "N 6 G"], force: Float[np.ndarray, "N 3"]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return b0 [N] of each problem, and whether it is certified.
+
+    Along the direction d of the generators' sum every generator counts positively, as a rule. The
+    equation along d gives b0 = (d . f - sum_j (d . g_j) s_j) / sum_j d . g_j for b = b0 + s; the
+    other five remain: A s = r, s >= 0, and b0 is largest where gamma . s is least, gamma > 0.
+    """
+    frame = _frames_along(wrenches[:, :3].sum(axis=2))
+    turned = np.concatenate([frame @ wrenches[:, :3], wrenches[:, 3:]], axis=1)
+    wanted = np.concatenate([(frame @ force[:, :, None])[:, :, 0], np.zeros_like(force)], axis=1)
+    total = turned.sum(axis=2)
+    usable = (turned[:, 0] > 0.0).all(axis=1)
+    leading = np.where(usable, total[:, 0], 1.0)
+    gamma = turned[:, 0] / leading[:, None]
+    share = wanted[:, 0] / leading
+    A = turned[:, 1:] - total[:, 1:, None] * gamma[:, None, :]
+    r = wanted[:, 1:] - total[:, 1:] * share[:, None]
+    # Scaled so that forces are about one: the tolerances of the solver are absolute.
+    scale = np.linalg.norm(force, axis=1, keepdims=True)
+    scale = np.where(scale > 0.0, scale, 1.0)
+    factor = gamma.shape[1]
+    answer = maximise(r / scale, A.transpose(0, 2, 1), np.maximum(gamma, 0.0) * factor)
+    best, certified = _certify(A, r / scale, gamma * factor, answer.active)
+    return share - best * scale[:, 0] / factor, certified & answer.solved & usable
+
+
+def _certify(
+    A: Float[np.ndarray, "N 5 G"],
+    r: Float[np.ndarray, "N 5"],
+    gamma: Float[np.ndarray, "N G"],
+    active: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solve once more on each final basis; check both sides of duality."""
+    whole = np.all(active >= 0, axis=1)
+    basis = np.where(active >= 0, active, 0)
+    columns = np.take_along_axis(A, basis[:, None, :], axis=2)  # [N, 5, 5]
+    columns = np.where(whole[:, None, None], columns, np.eye(5))
+    regular = np.abs(np.linalg.det(columns)) > 1e-14
+    columns = np.where(regular[:, None, None], columns, np.eye(5))
+    costs = np.take_along_axis(gamma, basis, axis=1)
+    y = np.linalg.solve(columns.transpose(0, 2, 1), costs[:, :, None])
+    s = np.linalg.solve(columns, r[:, :, None])[:, :, 0]
+    reduced = gamma - (y.transpose(0, 2, 1) @ A)[:, 0]
+    tolerance = 10 * _CERTIFIED * (1.0 + np.abs(s).max(axis=1))
+    primal = s.min(axis=1) >= -tolerance
+    dual = reduced.min(axis=1) >= -1e2 * _CERTIFIED * (1.0 + np.abs(y[:, :, 0]).max(axis=1))
+    return (costs * s).sum(axis=1), whole & regular & primal & dual
+
+
+def _frames_along(direction: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, "N 3 3"]:
+    """Return rotations whose first row points along each direction."""
+    length = np.linalg.norm(direction, axis=1, keepdims=True)
+    first = np.where(length > 1e-9, direction / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
+    helper = np.eye(3)[np.abs(first).argmin(axis=1)]
+    second = cross(first, helper)
+    second /= np.linalg.norm(second, axis=1, keepdims=True)
+    return np.stack([first, second, cross(first, second)], axis=1)
+
+
+def _require(
+    points: np.ndarray,
+    normals: np.ndarray,
+    com: np.ndarray,
+    mass: float,
+    friction: float,
+    acceleration: np.ndarray | None,
+) -> tuple[int, ...]:
+    batch = points.shape[:-2]
+    if points.ndim < 2 or points.shape != normals.shape or com.shape != (*batch, 3):
+        raise InputError(
+            f"points {points.shape}, normals {normals.shape} and centre of mass {com.shape} do not "
+            "belong together: give [..., P, 3], [..., P, 3] and [..., 3]"
+        )
+    if points.shape[-1] != 3 or points.shape[-2] < 1:
+        raise InputError(f"points of shape {points.shape}: give at least one point of x, y, z")
+    if acceleration is not None and acceleration.shape != com.shape:
+        raise InputError(
+            f"acceleration {acceleration.shape} must have the shape of the centre of mass, "
+            f"{com.shape}"
+        )
+    arrays = [points, normals, com, *([] if acceleration is None else [acceleration])]
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise InputError("points, normals, centre of mass and acceleration must be finite numbers")
+    if np.abs(np.linalg.norm(normals, axis=-1) - 1.0).max(initial=0.0) > 1e-6:
+        raise InputError("contact normals must have length 1")
+    if not (np.isfinite(mass) and mass > 0.0 and np.isfinite(friction) and friction > 0.0):
+        raise InputError(f"mass {mass} kg and friction {friction} must be positive numbers")
+    return batch

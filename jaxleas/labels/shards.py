@@ -1,0 +1,116 @@
+"""Verdict files: one for each few dozen guide paths, complete or absent, so that work restarts."""
+
+import hashlib
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from jaxleas.contacts.sampling import SamplingSettings
+from jaxleas.files import read_json, write_json
+from jaxleas.labels.verdict import Verdict, verdict_from_json, verdict_to_json
+from jaxleas.types.errors import InputError
+
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A run of guide paths of one file, judged together.
+
+    Attributes:
+        guides: the guide path file.
+        scene: the scene file.
+        planner: its name.
+        settings: of the planner.
+        first: number of the first guide path.
+        last: number after the last guide path.
+        out: the verdict file.
+        provenance: where the verdicts come from, as written into the file.
+    """
+
+    guides: Path
+    scene: Path
+    planner: str
+    settings: SamplingSettings
+    first: int
+    last: int
+    out: Path
+    provenance: dict[str, Any]
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the verdict file is there.
+
+        Raises:
+            InputError: it is there, but made from other guides, another scene or other settings.
+        """
+        if not self.out.exists():
+            return False
+        content = read_json(self.out)
+        found = content.get("provenance") if isinstance(content, dict) else None
+        if found != self.provenance:
+            raise InputError(
+                f"{self.out} holds verdicts made {_difference(found, self.provenance)}; give "
+                "another --out, or remove that folder"
+            )
+        return True
+
+
+def provenance_of(
+    guides: Path, scene: Path, planner: str, settings: SamplingSettings
+) -> dict[str, Any]:
+    """Return where verdicts come from: planner, version, parameters, terrain, seed, guide paths."""
+    return {
+        "planner": planner,
+        "jaxleas": version("jaxleas"),
+        "parameters": settings.model_dump(mode="json"),
+        "seed": settings.seed,
+        "scene": {"file": scene.name, "sha256": _sha256(scene)},
+        "guides": {"file": guides.name, "sha256": _sha256(guides)},
+    }
+
+
+def write_shard(shard: Shard, verdicts: list[Verdict]) -> None:
+    """Write verdicts and their provenance, whole or not at all."""
+    write_json(
+        shard.out,
+        {
+            "version": VERSION,
+            "provenance": shard.provenance,
+            "verdicts": [verdict_to_json(verdict) for verdict in verdicts],
+        },
+    )
+
+
+def read_verdicts(folder: str | Path) -> list[tuple[dict[str, Any], Verdict]]:
+    """Return all verdicts under a folder, each with its provenance, in order of file and path.
+
+    Raises:
+        InputError: there are none, or a file is none of ours.
+    """
+    files = sorted(Path(folder).rglob("verdicts_*.json"))
+    if not files:
+        raise InputError(f"{folder} holds no verdicts: no file verdicts_*.json is under it")
+    found = []
+    for path in files:
+        content = read_json(path)
+        if not isinstance(content, dict) or content.get("version") != VERSION:
+            raise InputError(f"{path} is no verdict file of version {VERSION}")
+        for value in content["verdicts"]:
+            found.append((content["provenance"], verdict_from_json(value, str(path))))
+    return found
+
+
+def _sha256(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+
+
+def _difference(found: Any, wanted: dict[str, Any]) -> str:
+    if not isinstance(found, dict):
+        return "by something else"
+    other = [key for key in wanted if found.get(key) != wanted[key]]
+    return f"with other {' and '.join(other)}" if other else "by something else"
