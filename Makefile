@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 CONFIG ?= configs/leas_p1.yaml
 RUN_DIR ?= runs/leas_p1
 BENCH ?=
-# The seven dependencies of the test tools are not needed to train: two locked lists, two stamps.
+# What only the tests need is not installed to train: two locked lists, two stamps.
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
 

@@ -8,12 +8,9 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull
 
 from jaxleas.terrain.polygons import (
-    CONVEXITY_TOLERANCE,
     MIN_AREA,
-    PLANARITY_TOLERANCE,
-    convexity_deviation,
-    planarity_deviation,
     polygon_area_vector,
+    require_planar_and_convex,
 )
 from jaxleas.types.errors import InputError
 
@@ -99,18 +96,7 @@ def require_polygon(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
         raise InputError(f"{where} is degenerate: its area is below {MIN_AREA:g} m^2")
     if np.linalg.norm(vertices - np.roll(vertices, 1, axis=0), axis=1).min() < 1e-6:
         raise InputError(f"{where} repeats a vertex; list each corner once")
-    deviation = planarity_deviation(vertices)
-    if deviation > PLANARITY_TOLERANCE:
-        raise InputError(
-            f"{where} is not planar: a vertex lies {deviation:.4g} m off its plane "
-            f"(at most {PLANARITY_TOLERANCE:g} m is accepted)"
-        )
-    deviation = convexity_deviation(vertices)
-    if deviation > CONVEXITY_TOLERANCE:
-        raise InputError(
-            f"{where} is not convex: a vertex lies {deviation:.4g} m outside an edge "
-            f"(at most {CONVEXITY_TOLERANCE:g} m is accepted); cut it into convex parts"
-        )
+    require_planar_and_convex(vertices, where)
 
 
 def _corners(flat: np.ndarray, normal: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Terrain: scenes of convex surfaces, height maps, random arenas, named scenes, importers."""
 
-from jaxleas.terrain.config import GeneratorConfig, TerrainConfig
+from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import Arena, generate_arena
 from jaxleas.terrain.height_map import HeightMap, read_height_map, write_height_map
@@ -19,7 +19,6 @@ __all__ = [
     "Link",
     "Scenario",
     "Scene",
-    "TerrainConfig",
     "Tile",
     "TileKind",
     "circuit",

@@ -134,6 +134,3 @@ class GeneratorConfig(Strict):
         if self.stairs_probability + self.bridge_probability > 1.0 + 1e-9:
             raise ValueError("stairs_probability and bridge_probability sum to more than 1")
         return self
-
-
-TerrainConfig = GeneratorConfig

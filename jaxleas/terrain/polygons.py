@@ -66,6 +66,26 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
     area = polygon_area_vector(vertices)
     if np.linalg.norm(area) < MIN_AREA:
         raise InputError(f"{where} is degenerate: its area is below {MIN_AREA:g} m^2")
+    require_planar_and_convex(vertices, where)
+    if is_vertical(vertices):
+        if not wall:
+            raise InputError(
+                f"{where} is vertical: nothing can stand on it; list it as an obstacle"
+            )
+    elif area[2] < 0.0:
+        raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
+
+
+def require_planar_and_convex(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
+    """Refuse a polygon that is not planar or not convex within the tolerances.
+
+    Args:
+        vertices: at least three, finite, not all on one line [m].
+        where: what to call the polygon in a sentence.
+
+    Raises:
+        InputError: says which it is not, and by how many metres.
+    """
     deviation = planarity_deviation(vertices)
     if deviation > PLANARITY_TOLERANCE:
         raise InputError(
@@ -78,13 +98,6 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
             f"{where} is not convex: a vertex lies {deviation:.4g} m outside an edge "
             f"(at most {CONVEXITY_TOLERANCE:g} m is accepted); cut it into convex parts"
         )
-    if is_vertical(vertices):
-        if not wall:
-            raise InputError(
-                f"{where} is vertical: nothing can stand on it; list it as an obstacle"
-            )
-    elif area[2] < 0.0:
-        raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
 
 
 def box_faces(
