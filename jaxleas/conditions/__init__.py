@@ -9,12 +9,14 @@ from jaxleas.conditions.exact import (
     reconfirm,
 )
 from jaxleas.conditions.footprint import footprint_points, is_under_root
+from jaxleas.conditions.foresight import Foresight
 from jaxleas.conditions.reachability import reachability, strict_reachability
 
 __all__ = [
     "MARGIN_LIMIT",
     "VOID_IN_ROOT",
     "Condition",
+    "Foresight",
     "all_of",
     "collision",
     "exact_collision",

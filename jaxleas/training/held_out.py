@@ -29,7 +29,7 @@ def make_examination(
     held_out = config.held_out
     # Everybody has a link to cross here; in training some begin with a random goal.
     always_a_link = config.env.model_copy(update={"wander_share": 0.0})
-    env = SteeringEnv(always_a_link, env.condition)
+    env = SteeringEnv(always_a_link, env.condition, env.foresight)
     weights = RewardParams.of(config.env.reward)
     distribution = networks.parametric_action_distribution
 

@@ -7,7 +7,7 @@ from typing import Any
 import jax
 from jax import Array
 
-from jaxleas.conditions import Condition
+from jaxleas.conditions import Condition, Foresight
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.checkpoints import Checkpoints
@@ -44,6 +44,7 @@ class Trainer:
     Attributes:
         config: of the run.
         condition: that ends episodes; by default the environment's own, R* and C.
+        foresight: that ends episodes, too, such as a surrogate of a contact planner.
         env: the task.
         world: terrains to train on.
         held_out: terrains of the examination.
@@ -54,6 +55,7 @@ class Trainer:
 
     config: RunConfig
     condition: Condition | None = None
+    foresight: Foresight | None = None
     env: SteeringEnv = field(init=False)
     world: World = field(init=False)
     held_out: World = field(init=False)
@@ -65,7 +67,7 @@ class Trainer:
 
     def __post_init__(self) -> None:
         config = self.config
-        self.env = SteeringEnv(config.env, self.condition)
+        self.env = SteeringEnv(config.env, self.condition, self.foresight)
         self.world = training_world(config)
         self.held_out = held_out_world(config)
         networks = make_networks(config.network, self.env)

@@ -1,12 +1,21 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
-from jaxleas.conditions import Condition, all_of, collision, footprint_points, strict_reachability
+from jaxleas.conditions import (
+    Condition,
+    Foresight,
+    all_of,
+    collision,
+    footprint_points,
+    strict_reachability,
+)
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
@@ -31,17 +40,25 @@ class SteeringEnv:
         robot: that walks.
         points_in_root: where the local terrain is sampled [m].
         condition: on local terrain and motion; an episode ends where it fails.
+        foresight: a condition with memory, such as a surrogate of a contact planner; an episode
+            ends where it fails, too. None: nothing is foreseen.
     """
 
     action_size = ACTION_SIZE
 
-    def __init__(self, config: SteeringConfig, condition: Condition | None = None):
+    def __init__(
+        self,
+        config: SteeringConfig,
+        condition: Condition | None = None,
+        foresight: Foresight | None = None,
+    ):
         """Prepare the task.
 
         Args:
             config: of the task.
             condition: that ends an episode; by default strict reachability and collision of the
                 robot (R* and C, T 3.3.1).
+            foresight: that ends an episode as well, out of what it remembers of it.
         """
         self.config = config
         self.layout = layout_named(config.observation)
@@ -54,6 +71,7 @@ class SteeringEnv:
             strict_reachability(self.robot, self.points_in_root),
             collision(self.robot, self.points_in_root),
         )
+        self.foresight = foresight
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
@@ -71,10 +89,16 @@ class SteeringEnv:
         seen = heights_in_root[..., : len(self.layout.points_in_root)]
         return observe(seen, motion, goal, self.height_range)
 
-    def start(self, motion: RootMotion, plan: Plan) -> SteeringState:
-        """Return the state at the beginning of an episode."""
+    def start(self, motion: RootMotion, plan: Plan, memory: Any = ()) -> SteeringState:
+        """Return the state at the beginning of an episode.
+
+        Args:
+            motion: of the root.
+            plan: of the episode.
+            memory: as the foresight's `begin` returned it; nothing without foresight.
+        """
         zero = jnp.zeros_like(plan.map_index)
-        return SteeringState(motion=motion, plan=plan, goal_index=zero, goal_age=zero, step=zero)
+        return SteeringState(motion, plan, goal_index=zero, goal_age=zero, step=zero, memory=memory)
 
     def goal(self, state: SteeringState) -> Float[Array, "*batch 2"]:
         """Return the goal that is sought now [m]."""
@@ -100,6 +124,10 @@ class SteeringEnv:
         motion = integrate(state.motion, command, config.limits)
         heights = self.local_heights(atlas, state.plan.map_index, motion)
         margin = self.condition(heights, motion)
+        memory = state.memory
+        if self.foresight is not None:
+            foreseen, memory = self.foresight.follow(memory, heights, motion)
+            margin = jnp.minimum(margin, foreseen)
         valid = margin >= 0.0
 
         toward, distance = direction_to_goal(motion, self.goal(state))
@@ -114,6 +142,7 @@ class SteeringEnv:
             goal_index=jnp.minimum(state.goal_index + replaced, GOALS - 1),
             goal_age=jnp.where(replaced, 0, age),
             step=state.step + 1,
+            memory=memory,
         )
         return after, Outcome(
             observation=self.observe(heights, motion, self.goal(after)),

@@ -1,5 +1,7 @@
 """Fresh starts: terrain, position, heading, velocity and goals, drawn anew and checked."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from flax import struct
@@ -53,14 +55,21 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
     link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
     plan = _draw_plan(env, world, link, goal_key)
     motion = _draw_motion(env, world, link, place_key, motion_key)
-    state = env.start(motion, plan)
+    heights = env.local_heights(world.atlas, plan.map_index, motion)
+    valid = env.condition(heights, motion) >= 0.0
+    memory: Any = ()
+    if env.foresight is not None:
+        # A key beside the five: without foresight the same starts are drawn as ever.
+        chance = jax.random.uniform(jax.random.fold_in(key, 5), (count,))
+        foreseen, memory = env.foresight.begin(heights, motion, chance)
+        valid &= foreseen >= 0.0
+    state = env.start(motion, plan, memory)
     wanders = jax.random.bernoulli(wander_key, env.config.wander_share, (count,))
     state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
-    heights = env.local_heights(world.atlas, plan.map_index, motion)
     arrival = _arrival(env, world, motion, plan)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
     arrives = env.condition(arrival_heights, arrival) >= 0.0
-    valid = (env.condition(heights, motion) >= 0.0) & (arrives | ~world.crossable[link])
+    valid &= arrives | ~world.crossable[link]
     return StartPool(
         state=state,
         observation=env.observe(heights, motion, env.goal(state)),

@@ -1,5 +1,7 @@
 """The values of the steering environment that evolve."""
 
+from typing import Any
+
 from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
@@ -36,6 +38,7 @@ class SteeringState:
         goal_index: which goal is sought now.
         goal_age: steps since that goal was given.
         step: steps since the episode began.
+        memory: what the environment's foresight remembers; empty without one.
     """
 
     motion: RootMotion
@@ -43,6 +46,7 @@ class SteeringState:
     goal_index: Int[Array, "*batch"]
     goal_age: Int[Array, "*batch"]
     step: Int[Array, "*batch"]
+    memory: Any = ()
 
 
 @struct.dataclass

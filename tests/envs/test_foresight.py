@@ -1,0 +1,84 @@
+"""A condition with memory in the environment: it begins, follows, ends episodes, begins anew."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv, draw_starts, take
+from jaxleas.envs.steering.starts import restart_where
+from jaxleas.training.checkpoints import Checkpoints
+
+from .worlds import flat, height_map, world_of
+
+LIFE = 3
+
+
+class Patience:
+    """Lets every walk go on for LIFE steps; refuses starts with a chance below `least`."""
+
+    def __init__(self, least=0.0):
+        self.least = least
+
+    def begin(self, heights_in_root, motion, chance):
+        memory = {"steps": jnp.zeros_like(chance), "from": motion.position, "chance": chance}
+        return chance - self.least, memory
+
+    def follow(self, memory, heights_in_root, motion):
+        memory = memory | {"steps": memory["steps"] + 1.0}
+        return LIFE - memory["steps"], memory
+
+
+@pytest.fixture(scope="module")
+def world():
+    return world_of(height_map(flat, half_size=3.0))
+
+
+def make(least=0.0):
+    return SteeringEnv(SteeringConfig(), foresight=Patience(least))
+
+
+def test_an_episode_ends_where_foresight_fails_though_the_configuration_is_valid(world):
+    env = make()
+    weights = RewardParams.of(env.config.reward)
+    state, _ = take(draw_starts(env, world, jax.random.key(0), 64), jax.random.key(1), 8)
+    for step in range(1, LIFE + 2):
+        state, outcome = env.step(world.atlas, weights, state, jnp.zeros((8, 4)))
+        assert np.all(np.asarray(outcome.terminated) == (step > LIFE))
+        assert np.all(state.memory["steps"] == step)
+
+
+def test_a_fresh_start_brings_a_fresh_memory(world):
+    env = make()
+    pool = draw_starts(env, world, jax.random.key(0), 64)
+    state, observation = take(pool, jax.random.key(1), 8)
+    weights = RewardParams.of(env.config.reward)
+    state, outcome = env.step(world.atlas, weights, state, jnp.zeros((8, 4)))
+    done = jnp.arange(8) % 2 == 0
+    state, _ = restart_where(done, state, outcome.observation, pool, jax.random.key(2))
+    np.testing.assert_array_equal(state.memory["steps"], np.where(done, 0.0, 1.0))
+    np.testing.assert_array_equal(state.memory["from"][::2], state.motion.position[::2])
+
+
+def test_starts_that_foresight_refuses_are_never_taken(world):
+    pool = draw_starts(make(least=0.5), world, jax.random.key(0), 256)
+    everything = draw_starts(make(), world, jax.random.key(0), 256)
+    state, _ = take(pool, jax.random.key(1), 200)
+    assert np.all(state.memory["chance"] >= 0.5)
+    assert 0.35 < pool.valid_count / everything.valid_count < 0.65
+
+
+def test_without_foresight_the_same_starts_are_drawn(world):
+    seeing = draw_starts(make(), world, jax.random.key(0), 64).state
+    blind = draw_starts(SteeringEnv(SteeringConfig()), world, jax.random.key(0), 64).state
+    np.testing.assert_array_equal(seeing.motion.position, blind.motion.position)
+    np.testing.assert_array_equal(seeing.plan.goals, blind.plan.goals)
+    assert blind.memory == ()
+
+
+def test_memory_is_saved_with_the_episode(world, tmp_path):
+    state, _ = take(draw_starts(make(), world, jax.random.key(0), 64), jax.random.key(1), 8)
+    checkpoints = Checkpoints(tmp_path)
+    checkpoints.save(1, state, {})
+    _, restored, _ = checkpoints.latest(state)
+    np.testing.assert_array_equal(restored.memory["chance"], state.memory["chance"])
