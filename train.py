@@ -2,20 +2,25 @@
 
 python train.py configs/leas_p1.yaml [--run-dir DIR] [--any.field VALUE ...]
 python train.py --resume RUN
+
+Either with [--devices all|N], and with [--coordinator HOST:PORT --process I/N] or
+[--coordinator auto] for each of several processes that train together.
 """
 
 import argparse
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from jaxleas.cli_guard import UsageError, run_guarded
 
 # JAX takes a second to import: not before the command line has been understood.
 if TYPE_CHECKING:
     from jaxleas.training.config import RunConfig
+    from jaxleas.training.devices import Devices
     from jaxleas.training.run_folder import RunFolder
 
 
@@ -30,41 +35,73 @@ def main(arguments: Sequence[str]) -> None:
     if given.resume and (overrides or given.run_dir):
         surplus = overrides or ["--run-dir"]
         raise UsageError(f"--resume goes on exactly as configured: leave out {' '.join(surplus)}")
-    config, run = _go_on(given.resume) if given.resume else _begin(given, overrides, arguments)
-    with run:
-        _run(config, run)
+    if given.coordinator is None and given.process is None:
+        config, devices, run = _open(given, overrides, arguments)
+        with run:
+            _train(config, devices, run)
+            _conclude(config, run)
+    else:
+        _train_together(given, overrides, arguments)
 
 
-def _go_on(folder: str) -> "tuple[RunConfig, RunFolder]":
-    from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config
-    from jaxleas.training.run_folder import RunFolder
-
-    run = RunFolder.open(folder, writing=True, needs_checkpoint=False)
-    return load_config(RunConfig, run.config), run
-
-
-def _begin(
+def _train_together(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
-) -> "tuple[RunConfig, RunFolder]":
+) -> None:
+    """Train with other processes: process 0 opens the run, the others are told what it is."""
+    from jaxleas.training.config import RunConfig
+    from jaxleas.training.devices import choose_devices
+    from jaxleas.training.processes import connect, disconnect, from_first
+
+    opened = []
+
+    def open_run() -> str:
+        opened.append(_open(given, overrides, arguments))
+        return opened[0][0].model_dump_json()
+
+    connect(given.coordinator, given.process)
+    config = RunConfig.model_validate_json(from_first(open_run))
+    run = opened[0][2] if opened else None
+    with run or nullcontext():
+        _train(config, choose_devices(given.devices, config.ppo), run)
+        disconnect()
+        if run is not None:
+            _conclude(config, run)
+
+
+def _open(
+    given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
+) -> "tuple[RunConfig, Devices, RunFolder]":
     from jaxleas.training.config import RunConfig
     from jaxleas.training.configuration import load_config, to_yaml
+    from jaxleas.training.devices import choose_devices
     from jaxleas.training.run_folder import RunFolder
 
+    if given.resume:
+        run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
+        config = load_config(RunConfig, run.config)
+        return config, choose_devices(given.devices, config.ppo), run
     config = load_config(RunConfig, given.config, overrides)
+    devices = choose_devices(given.devices, config.ppo)
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
-    return config, run
+    return config, devices, run
 
 
-def _run(config: "RunConfig", run: "RunFolder") -> None:
-    from jaxleas.evaluation.commands import evaluate, report
-    from jaxleas.export.commands import export
+def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> None:
     from jaxleas.training.compilation import keep_compiled_programs
-    from jaxleas.training.loop import train
+    from jaxleas.training.loop import assist, train
 
     keep_compiled_programs()
-    train(config, run)
+    if run is None:
+        assist(config, devices)
+    else:
+        train(config, run, devices=devices)
+
+
+def _conclude(config: "RunConfig", run: "RunFolder") -> None:
+    from jaxleas.evaluation.commands import evaluate, report
+    from jaxleas.export.commands import export
+
     if config.final.evaluate:
         evaluate(run.path, starts=config.final.starts)
         export(run.path)
@@ -76,7 +113,18 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("config", nargs="?")
     parser.add_argument("--run-dir")
     parser.add_argument("--resume", metavar="RUN")
+    parser.add_argument("--devices", type=_device_count, default="all", metavar="all|N")
+    parser.add_argument("--coordinator", metavar="HOST:PORT")
+    parser.add_argument("--process", metavar="I/N")
     return parser
+
+
+def _device_count(text: str) -> int | Literal["all"]:
+    if text == "all":
+        return "all"
+    if not (text.isdecimal() and int(text) > 0):
+        raise UsageError(f"--devices is {text!r}, but it should be all or a number of devices")
+    return int(text)
 
 
 if __name__ == "__main__":

@@ -12,15 +12,17 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.checkpoints import Checkpoints
 from jaxleas.training.config import RunConfig
+from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.held_out import make_examination
 from jaxleas.training.interruption import Interruption
 from jaxleas.training.metrics import MetricsLog
 from jaxleas.training.networks import make_networks
 from jaxleas.training.policy import SteeringPolicy, policy_of, read_policy, write_policy
 from jaxleas.training.ppo import make_train_step
+from jaxleas.training.processes import any_process, from_first
 from jaxleas.training.progress import Progress
 from jaxleas.training.run_folder import RunFolder
-from jaxleas.training.train_state import TrainState, initial_state
+from jaxleas.training.train_state import Learned, TrainState, initial_state
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import JaxleasError
 
@@ -44,6 +46,7 @@ class Trainer:
     Attributes:
         config: of the run.
         condition: that ends episodes; by default the environment's own, R* and C.
+        devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
         env: the task.
         world: terrains to train on.
@@ -55,6 +58,7 @@ class Trainer:
 
     config: RunConfig
     condition: Condition | None = None
+    devices: Devices = field(default_factory=one_device)
     foresight: Foresight | None = None
     env: SteeringEnv = field(init=False)
     world: World = field(init=False)
@@ -66,14 +70,24 @@ class Trainer:
     fresh_state: Callable[[], TrainState] = field(init=False)
 
     def __post_init__(self) -> None:
-        config = self.config
+        config, devices = self.config, self.devices
         self.env = SteeringEnv(config.env, self.condition, self.foresight)
-        self.world = training_world(config)
-        self.held_out = held_out_world(config)
+        self.world = jax.device_put(training_world(config), devices.whole)
+        self.held_out = jax.device_put(held_out_world(config), devices.whole)
         networks = make_networks(config.network, self.env)
-        self.train_step = jax.jit(make_train_step(config, self.env, networks), donate_argnums=1)
-        self.examine = jax.jit(make_examination(config, self.env, networks))
-        begin = jax.jit(lambda world: initial_state(config, self.env, world, networks))
+        self.train_step = jax.jit(
+            make_train_step(config, self.env, networks, devices.divide_robots),
+            donate_argnums=1,
+            in_shardings=(devices.whole, devices.state),
+            out_shardings=(devices.state, devices.whole),
+        )
+        self.examine = jax.jit(
+            make_examination(config, self.env, networks), out_shardings=devices.whole
+        )
+        begin = jax.jit(
+            lambda world: initial_state(config, self.env, world, networks),
+            out_shardings=devices.state,
+        )
         self.fresh_state = lambda: begin(self.world)
 
     def policy(self, state: TrainState) -> SteeringPolicy:
@@ -81,16 +95,26 @@ class Trainer:
         return policy_of(self.env, self.config.network.activation, state.normaliser, state.averaged)
 
 
-def train(config: RunConfig, run: RunFolder, condition: Condition | None = None) -> SteeringPolicy:
+def train(
+    config: RunConfig,
+    run: RunFolder,
+    condition: Condition | None = None,
+    devices: Devices | None = None,
+    foresight: Foresight | None = None,
+    learned: Learned | None = None,
+) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
     A folder that holds checkpoints is gone on with from the newest, exactly as if the run had
-    never been interrupted.
+    never been interrupted; on other devices than before, within rounding.
 
     Args:
         config: of the run.
         run: folder held for writing.
         condition: that ends episodes, in place of R* and C.
+        devices: that share the training; by default the first.
+        foresight: that ends episodes, too, such as a surrogate of a contact planner.
+        learned: to begin with, in place of fresh networks; a resumed run has its own.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -99,24 +123,65 @@ def train(config: RunConfig, run: RunFolder, condition: Condition | None = None)
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
     """
-    trainer = Trainer(config, condition)
+    trainer = Trainer(config, condition, devices or one_device(), foresight)
     checkpoints = Checkpoints(run.checkpoints)
     resuming = bool(checkpoints.steps())
-    if resuming:
-        like = jax.eval_shape(trainer.fresh_state)
-        step, state, note = checkpoints.latest(like)
-        best = note["best"]
-    else:
-        step, state, best = 0, trainer.fresh_state(), -1.0
-        checkpoints.save(0, state, {"best": best})
+    step, state, best = _first_state(trainer, checkpoints, learned)
     total = config.ppo.updates * config.ppo.batch
     with (
         MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(total, start=step) as progress,
         Interruption() as interruption,
     ):
-        _Session(trainer, run, checkpoints, log, progress, interruption, best).go_on(state)
+        desk = _Desk(trainer, run, checkpoints, log, progress, best)
+        _Session(trainer, interruption, desk).go_on(state)
     return read_policy(run.path / POLICY_FILE)
+
+
+def assist(config: RunConfig, devices: Devices, condition: Condition | None = None) -> None:
+    """Take part in a training whose run folder process 0 holds: compute, and write nothing.
+
+    Args:
+        config: of the run.
+        devices: of all processes.
+        condition: that ends episodes, in place of R* and C.
+
+    Raises:
+        NonFiniteError: a number became infinite or NaN.
+        InterruptedRunError: a signal asked a process to stop.
+    """
+    trainer = Trainer(config, condition, devices)
+    _, state, _ = _first_state(trainer, None)
+    with Interruption() as interruption:
+        _Session(trainer, interruption, None).go_on(state)
+
+
+def _first_state(
+    trainer: Trainer, checkpoints: Checkpoints | None, learned: Learned | None = None
+) -> tuple[int, TrainState, float]:
+    """Return step, state and best score to go on from: the newest checkpoint's, or fresh ones.
+
+    Only process 0 has checkpoints; the other processes get its state.
+    """
+    like = jax.eval_shape(trainer.fresh_state)
+    found = None
+
+    def look() -> str:
+        nonlocal found
+        if checkpoints is not None and checkpoints.steps():
+            found = checkpoints.latest(like)
+        return "fresh" if found is None else "resumed"
+
+    if from_first(look) == "resumed":
+        step, state, note = found or (0, like, {"best": -1.0})
+        return step, trainer.devices.place(state), note["best"]
+    state = trainer.fresh_state()
+    if learned is not None:
+        state = trainer.devices.place(learned.into(state))
+    kept = trainer.devices.gather(state)
+    if checkpoints is not None:
+        checkpoints.save(0, kept, {"best": -1.0})
+    return 0, state, -1.0
 
 
 @dataclass
@@ -124,15 +189,12 @@ class _Session:
     """One sitting of a run: from a state to the end, or to an interruption."""
 
     trainer: Trainer
-    run: RunFolder
-    checkpoints: Checkpoints
-    log: MetricsLog
-    progress: Progress
     interruption: Interruption
-    best: float
+    desk: "_Desk | None"
 
     def go_on(self, state: TrainState) -> None:
         config = self.trainer.config
+        alone = jax.process_count() == 1
         done = int(state.update)
         pending: list[tuple[int, dict[str, Array]]] = []
         while done < config.ppo.updates:
@@ -140,18 +202,25 @@ class _Session:
             done += 1
             pending.append((done, metrics))
             due = done % config.held_out.every == 0 or done == config.ppo.updates
-            if due or self.interruption.requested:
+            # Several processes decide together, where they wait for each other anyway.
+            if due or (alone and self.interruption.requested):
                 # The only point where the host waits for the device.
                 rows = self._check(pending)
                 pending = []
                 verdict = self._examine(state) if due else {}
-                self._record(rows, verdict)
-                self._save(state, done, verdict)
-            if self.interruption.requested and done < config.ppo.updates:
-                raise InterruptedRunError(
-                    f"interrupted after {done} of {config.ppo.updates} updates; all is saved: go on"
-                    f" with  python train.py --resume {self.run.path}"
-                )
+                kept = self.trainer.devices.gather(state)
+                if self.desk is not None:
+                    self.desk.record(rows, verdict)
+                    self.desk.save(kept, done, verdict)
+                if any_process(self.interruption.requested) and done < config.ppo.updates:
+                    raise InterruptedRunError(self._farewell(done))
+
+    def _farewell(self, done: int) -> str:
+        where = "RUN" if self.desk is None else self.desk.run.path
+        return (
+            f"interrupted after {done} of {self.trainer.config.ppo.updates} updates; all is saved:"
+            f" go on with  python train.py --resume {where}"
+        )
 
     def _check(self, pending: list[tuple[int, dict[str, Array]]]) -> list[tuple[int, dict]]:
         """Fetch the metrics of the updates since the last check; stop at a non-finite number."""
@@ -161,9 +230,10 @@ class _Session:
             if bad:
                 where = ", ".join(name.removeprefix("finite/") for name in bad)
                 step = update * self.trainer.config.ppo.batch
+                folder = "process 0's run folder" if self.desk is None else self.desk.run.checkpoints
                 raise NonFiniteError(
                     f"update {update} (step {step}) made non-finite numbers in: {where}; the last"
-                    f" good state is kept in {self.run.checkpoints}: a smaller learning rate or"
+                    f" good state is kept in {folder}: a smaller learning rate or"
                     " max_gradient_norm may help"
                 )
         return rows
@@ -172,7 +242,19 @@ class _Session:
         verdict = self.trainer.examine(self.trainer.held_out, state.normaliser, state.averaged)
         return {name: float(value) for name, value in verdict.items()}
 
-    def _record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
+
+@dataclass
+class _Desk:
+    """Where process 0 writes down what all have computed."""
+
+    trainer: Trainer
+    run: RunFolder
+    checkpoints: Checkpoints
+    log: MetricsLog
+    progress: Progress
+    best: float
+
+    def record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
         batch = self.trainer.config.ppo.batch
         for update, metrics in rows:
             numbers = {
@@ -185,7 +267,7 @@ class _Session:
             shown["held out"] = f"{100 * verdict['held_out/reached']:.1f} %"
         self.progress.update(rows[-1][0] * batch, shown)
 
-    def _save(self, state: TrainState, done: int, verdict: dict[str, float]) -> None:
+    def save(self, state: TrainState, done: int, verdict: dict[str, float]) -> None:
         score = verdict.get("held_out/reached")
         # Of equals the later: its learning rate was smaller and its average longer.
         if score is not None and score >= self.best:

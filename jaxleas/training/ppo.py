@@ -22,19 +22,25 @@ Metrics = dict[str, Array]
 TrainStep = Callable[[World, TrainState], tuple[TrainState, Metrics]]
 
 
-def make_train_step(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> TrainStep:
+def make_train_step(
+    config: RunConfig,
+    env: SteeringEnv,
+    networks: PPONetworks,
+    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+) -> TrainStep:
     """Return the train step: draw fresh starts, walk, learn. It is pure; jit it as you like.
 
     Args:
         config: of the run.
         env: the task.
         networks: actor and critic.
+        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
 
     Returns:
         A function (world, state) -> (state after one update, metrics of that update).
     """
     walk = _make_walk(config, env, networks)
-    learn = _make_learn(config, env, networks)
+    learn = _make_learn(config, env, networks, divide_robots)
 
     def train_step(world: World, state: TrainState) -> tuple[TrainState, Metrics]:
         key, walk_key, learn_key = jax.random.split(state.key, 3)
@@ -141,7 +147,9 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
     return walk
 
 
-def _make_learn(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Callable:
+def _make_learn(
+    config: RunConfig, env: SteeringEnv, networks: PPONetworks, divide_robots: Callable[[Any], Any]
+) -> Callable:
     """Return the optimisation: `epochs` passes over the batch, a minibatch at a time."""
     ppo = config.ppo
     optimiser = make_optimiser(ppo)
@@ -167,7 +175,7 @@ def _make_learn(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> C
             params, moments = carry
             chosen, minibatch_key = inputs
             mirror_key, entropy_key = jax.random.split(minibatch_key)
-            minibatch = jax.tree.map(lambda leaf: leaf[:, chosen], batch)
+            minibatch = divide_robots(jax.tree.map(lambda leaf: leaf[:, chosen], batch))
             if ppo.mirror:
                 minibatch = _mirror_half(env, minibatch, mirror_key)
             # Brax's loss wants [robots, time].

@@ -16,6 +16,7 @@ from jaxleas.envs.steering.world import World
 from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.networks import Normaliser, initial_normaliser
+from jaxleas.types import InputError
 
 
 @struct.dataclass
@@ -41,6 +42,43 @@ class TrainState:
     observation: Float[Array, "robots size"]
     key: Key[Array, ""]
     update: Int[Array, ""]
+
+
+@struct.dataclass
+class Learned:
+    """What a run has learned, to begin another with.
+
+    Attributes:
+        params: of actor and critic.
+        averaged: the averaged actor.
+        normaliser: of observations.
+    """
+
+    params: Any
+    averaged: Any
+    normaliser: Normaliser
+
+    @classmethod
+    def of(cls, state: TrainState) -> "Learned":
+        """Take it out of a state."""
+        return cls(params=state.params, averaged=state.averaged, normaliser=state.normaliser)
+
+    def into(self, state: TrainState) -> TrainState:
+        """Return a fresh state with it in place of untrained networks.
+
+        Raises:
+            InputError: the networks are of other sizes.
+        """
+        mine = jax.tree.map(jnp.shape, (self.params, self.averaged, self.normaliser))
+        theirs = jax.tree.map(jnp.shape, (state.params, state.averaged, state.normaliser))
+        if jax.tree.structure(mine) != jax.tree.structure(theirs) or mine != theirs:
+            raise InputError(
+                "the networks to begin with are not of the sizes that this configuration asks for:"
+                " network.hidden and env.observation must be the same"
+            )
+        return state.replace(  # type: ignore[attr-defined]
+            params=self.params, averaged=self.averaged, normaliser=self.normaliser
+        )
 
 
 def make_optimiser(config: PpoConfig) -> optax.GradientTransformation:

@@ -29,6 +29,12 @@ def tiny(**ppo) -> RunConfig:
     return RunConfig.model_validate(TINY | {"ppo": TINY["ppo"] | ppo})
 
 
+def environment(devices: int) -> dict[str, str]:
+    """Return the variables of a process that takes the processor for several devices."""
+    forced = f"--xla_force_host_platform_device_count={devices}"
+    return os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": forced, "PYTHONPATH": str(ROOT)}
+
+
 def start_training(*arguments: str, cache: Path) -> subprocess.Popen:
     """Start `python train.py ...` with a compile cache of its own: one start is slow, not all."""
     return subprocess.Popen(

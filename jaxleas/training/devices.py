@@ -1,0 +1,149 @@
+"""The devices that share a training: robots are divided among them, everything else is on each.
+
+One program over global arrays (`jax.jit` with shardings): what it computes does not depend on how
+many devices there are, but for the order in which sums over robots are rounded.
+"""
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.sharding import Mesh, NamedSharding, PartitionSpec
+
+from jaxleas.training.config import PpoConfig
+from jaxleas.training.train_state import TrainState
+from jaxleas.types import InputError
+
+Tree = TypeVar("Tree")
+AXIS = "robots"
+DIVIDED = ("episode", "observation")  # fields of the train state with one entry a robot
+
+
+@dataclass(frozen=True)
+class Devices:
+    """Devices in a row, of this process alone or of all processes of a training.
+
+    Attributes:
+        mesh: the devices, along one axis.
+    """
+
+    mesh: Mesh
+
+    @classmethod
+    def of(cls, devices: Sequence[jax.Device]) -> "Devices":
+        """Return these devices in a row."""
+        return cls(Mesh(np.array(devices), (AXIS,)))
+
+    def __len__(self) -> int:
+        """Return the number of devices."""
+        return self.mesh.size
+
+    @property
+    def whole(self) -> NamedSharding:
+        """Of arrays that every device holds: terrain, parameters, metrics."""
+        return NamedSharding(self.mesh, PartitionSpec())
+
+    @property
+    def divided(self) -> NamedSharding:
+        """Of arrays with one entry a robot, along their first axis."""
+        return NamedSharding(self.mesh, PartitionSpec(AXIS))
+
+    @property
+    def state(self) -> TrainState:
+        """How a train state lies: a sharding for each of its fields."""
+        names = [field.name for field in dataclasses.fields(TrainState)]
+        return TrainState(
+            **{name: self.divided if name in DIVIDED else self.whole for name in names}
+        )
+
+    def divide_robots(self, minibatch: Tree) -> Tree:
+        """Divide a minibatch [time, robots, ...] by robot, so that each device learns from a part.
+
+        Without it the compiler gathers a shuffled minibatch on every device, and all of them
+        compute the same gradient.
+        """
+        if len(self) == 1:
+            return minibatch
+        by_robot = NamedSharding(self.mesh, PartitionSpec(None, AXIS))
+        return jax.lax.with_sharding_constraint(minibatch, by_robot)
+
+    def place(self, state: TrainState) -> TrainState:
+        """Return a state laid out over the devices; all processes must call it.
+
+        Args:
+            state: process 0's, as read from a checkpoint; the others give its shapes alone
+                (`jax.eval_shape`'s).
+        """
+
+        def put(leaf: Any, layout: NamedSharding) -> jax.Array:
+            return jax.device_put(_from_first(leaf) if several else leaf, layout)
+
+        several = self.mesh.is_multi_process
+        return jax.tree.map(put, state, jax.tree.broadcast(self.state, state))
+
+    def gather(self, state: TrainState) -> TrainState:
+        """Return a state whose arrays this process can read whole; all processes must call it."""
+        if self.mesh.is_multi_process:
+            return jax.jit(lambda tree: tree, out_shardings=self.whole)(state)
+        return state
+
+
+def choose_devices(count: int | Literal["all"], ppo: PpoConfig) -> Devices:
+    """Return the devices to train on.
+
+    Args:
+        count: how many of JAX's devices, those of all processes together; `"all"` of them.
+        ppo: whose robots they share.
+
+    Raises:
+        InputError: there are not so many, they do not divide the robots of a minibatch, or a
+            process would be left without.
+    """
+    there = jax.devices()
+    wanted = len(there) if count == "all" else count
+    if wanted > len(there):
+        raise InputError(f"--devices {wanted}: JAX finds {len(there)} here ({_kinds(there)})")
+    if jax.process_count() > 1 and wanted < len(there):
+        raise InputError(
+            f"--devices {wanted}: {jax.process_count()} processes have {len(there)} devices and"
+            " take part with all of them: leave --devices out"
+        )
+    _require_even(wanted, ppo)
+    return Devices.of(there[:wanted])
+
+
+def one_device() -> Devices:
+    """Return the first device of this process alone."""
+    return Devices.of(jax.local_devices()[:1])
+
+
+def _from_first(leaf: Any) -> Any:
+    """Return process 0's array on every process; the others give its shape."""
+    from jax.experimental.multihost_utils import broadcast_one_to_all
+
+    if jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key):
+        shape = jax.eval_shape(jax.random.key_data, leaf)
+        words = jax.random.key_data(leaf) if isinstance(leaf, jax.Array) else shape
+        return jax.random.wrap_key_data(jnp.asarray(_from_first(words)))
+    held = leaf if isinstance(leaf, jax.Array) else np.zeros(leaf.shape, leaf.dtype)
+    return broadcast_one_to_all(np.asarray(held))
+
+
+def _require_even(count: int, ppo: PpoConfig) -> None:
+    robots = ppo.environments // ppo.minibatches
+    if robots % count:
+        fitting = [number for number in range(1, count) if robots % number == 0]
+        raise InputError(
+            f"{count} devices cannot share the robots evenly: ppo.environments ="
+            f" {ppo.environments} in ppo.minibatches = {ppo.minibatches} are {robots} a minibatch,"
+            f" no multiple of {count}; --devices {fitting[-1]} would do, or other numbers of these"
+        )
+
+
+def _kinds(devices: Sequence[Any]) -> str:
+    kinds = [each.device_kind for each in devices]
+    return ", ".join(f"{kinds.count(kind)} x {kind}" for kind in sorted(set(kinds)))
