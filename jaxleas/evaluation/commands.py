@@ -32,7 +32,7 @@ def evaluate(
         starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
         json: where to write the result as well; a run folder keeps the one of most starts in
             RUN/evaluation/.
-        baseline: judge RB-Lin beside it.
+        baseline: judge RB-Lin and RB-Kino beside it.
         seed: of scenes and starts; training never sees any of them.
 
     Raises:

@@ -31,7 +31,7 @@ class CellResult(Strict):
     yaw: float
     """Heading at the start relative to the direction of crossing [deg]."""
     method: str
-    """"leas_p1", "rb_lin", ..."""
+    """"leas_p1", "rb_lin", "rb_kino", ..."""
     planner: str | None = None
     """The exact contact planner that judged; null: the analytic conditions did."""
     starts: Count

@@ -16,7 +16,7 @@ THESIS = {
     ("stairs_down", 180.0): 1.00,
     ("stairs_up", 180.0): 0.97,
 }
-METHOD_TITLES = {"leas_p1": "LEAS-P1", "rb_lin": "RB-Lin"}
+METHOD_TITLES = {"leas_p1": "LEAS-P1", "rb_lin": "RB-Lin", "rb_kino": "RB-Kino"}
 HEADINGS = (
     "cell",
     "yaw",
