@@ -11,7 +11,7 @@ from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
-from jaxleas.evaluation.suites import SUITES, Suite, make_suite
+from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
 from jaxleas.guide.rb_kino import rb_kino
@@ -121,7 +121,7 @@ def run_evaluations(
         progress: told which cell is walked now.
     """
     evaluations = []
-    for name in SUITES:
+    for name in REPORTED:
         path = evaluation_file(run, name)
         evaluation = kept_evaluation(path, candidate)
         if evaluation is None:

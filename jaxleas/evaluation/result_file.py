@@ -30,6 +30,10 @@ class CellResult(Strict):
     name: str
     yaw: float
     """Heading at the start relative to the direction of crossing [deg]."""
+    yaw_spread: Length = 0.0
+    """Headings are uniform in `yaw` +- this, to either side [deg]."""
+    speed: Length = 0.0
+    """At the start, along the heading [m/s]."""
     method: str
     """"leas_p1", "rb_lin", "rb_kino", ..."""
     planner: str | None = None
@@ -42,14 +46,17 @@ class CellResult(Strict):
     stopped: Fraction
     """Valid to the end of the episode, without reaching the goal."""
     planned: Fraction | None = None
+    """The goal was reached and the planner made contacts for the whole guide path."""
     robustness: float | None = None
+    """Mean over the postures of a contact plan, mean over plans [N]."""
     mean_step: Length | None = None
     """Of the contact plans [m]."""
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of the main fraction."""
     expectation: Literal["cross", "stop"] = "cross"
-    """"cross": the main fraction is `reached`; "stop": it is 1 - `invalid`."""
+    """"cross": the main fraction is `planned` where a planner judged, else `reached`; "stop": it
+    is 1 - `invalid`."""
     mean_time: Length | None = None
     """To the goal, of those that reached it [s]."""
     mean_length: Length | None = None
@@ -62,10 +69,16 @@ class CellResult(Strict):
     @property
     def success(self) -> float:
         """The main fraction."""
-        return self.reached if self.expectation == "cross" else 1.0 - self.invalid
+        if self.expectation == "stop":
+            return 1.0 - self.invalid
+        return self.reached if self.planned is None else self.planned
 
     @model_validator(mode="after")
     def _adds_up(self) -> Self:
+        if (self.planned is None) != (self.planner is None):
+            raise ValueError("`planned` and `planner` go together")
+        if self.planned is not None and self.planned > self.reached + 1e-6:
+            raise ValueError(f"planned is {self.planned:g}, more than the {self.reached:g} reached")
         total = self.reached + self.invalid + self.stopped
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"reached + invalid + stopped is {total:g}, not 1")
