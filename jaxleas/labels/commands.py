@@ -5,19 +5,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
-from jaxleas.types.errors import InputError
-
 
 def label(
     guides: Sequence[Path],
     *,
     scene: Path,
     out: Path,
-    planner: Literal["sampling"] = "sampling",
-    keep_every: int = 5,
-    samples: int = 25_000,
-    heuristic: Literal["fixed_step", "manipulability", "effort", "reference"] = "fixed_step",
-    seed: int = 0,
+    planner: Literal["sampling", "mip", "sl1m"] = "sampling",
+    keep_every: int | None = None,
+    samples: int | None = None,
+    heuristic: Literal["fixed_step", "manipulability", "effort", "reference"] | None = None,
+    seed: int | None = None,
+    model: Literal["two_com", "feet"] | None = None,
+    candidates: Literal["window", "rom"] | None = None,
+    window: float | None = None,
+    time_limit: float | None = None,
+    max_combinations: int | None = None,
     processes: int | None = None,
 ) -> None:
     """Judge guide paths by an exact planner, in parallel; verdicts that are there are kept.
@@ -27,10 +30,15 @@ def label(
         scene: that they walk on, .json.
         out: folder of the verdict files; the same command goes on where it was interrupted.
         planner: that judges.
-        keep_every: one configuration in so many is planned for.
-        samples: leg configurations in the data base.
-        heuristic: by which candidates are tried.
-        seed: of the data base.
+        keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
+        samples: sampling: leg configurations in the data base, 25000 by default.
+        heuristic: sampling: by which candidates are tried, fixed_step by default.
+        seed: sampling: of the data base, 0 by default.
+        model: mip, sl1m: two_com (with the centre of mass, the default) or feet.
+        candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
+        window: mip, sl1m: edge of the window, 0.8 by default [m].
+        time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
+        max_combinations: sl1m: after which it gives up, 2000 by default.
         processes: working at the same time; all cores by default.
     """
     from time import perf_counter
@@ -38,36 +46,42 @@ def label(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from jaxleas.contacts.sampling import SamplingSettings
     from jaxleas.labels.label import label_shards, plan_shards
+    from jaxleas.labels.settings import settings_from
     from jaxleas.labels.shards import read_verdicts
+    from jaxleas.labels.workers import Here, ProcessWorkers, require_count
 
-    for name, value in (("keep-every", keep_every), ("samples", samples)):
-        if value < 1:
-            raise InputError(f"--{name} is {value}; give 1 or more")
-    if processes is not None and processes < 1:
-        raise InputError(f"--processes is {processes}; give 1 or more")
-    if seed < 0:
-        raise InputError(f"--seed is {seed}; give 0 or more")
-    settings = SamplingSettings(
-        keep_every=keep_every, samples=samples, heuristic=heuristic, seed=seed
+    settings = settings_from(
+        planner,
+        keep_every=keep_every,
+        samples=samples,
+        heuristic=heuristic,
+        seed=seed,
+        model=model,
+        candidates=candidates,
+        window=window,
+        time_limit=time_limit,
+        max_combinations=max_combinations,
     )
+    count = (os.cpu_count() or 1) if processes is None else processes
+    require_count(count)
     begun = perf_counter()
     shards = plan_shards([Path(each) for each in guides], Path(scene), planner, settings, Path(out))
-    total = sum(shard.last - shard.first for shard in shards)
+    team = Here() if min(count, len(shards)) == 1 else ProcessWorkers(min(count, len(shards)))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task("label", total=total)
-        judged, before = label_shards(
-            shards,
-            processes or os.cpu_count() or 1,
-            lambda count: progress.advance(task, count),
-        )
+    try:
+        with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+            task = progress.add_task("label", total=sum(map(len, shards)))
+            judged, before = label_shards(shards, team, lambda done: progress.advance(task, done))
+    finally:
+        team.close()
     seconds = perf_counter() - begun
     verdicts = [verdict for _, verdict in read_verdicts(out)]
     good = sum(verdict.success for verdict in verdicts)
+    open_ = sum(not verdict.decided for verdict in verdicts)
     print(
-        f"{out}: {good} of {len(verdicts)} guide paths succeed with the {planner} planner; "
+        f"{out}: {good} of {len(verdicts)} guide paths succeed with the {planner} planner"
+        f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )

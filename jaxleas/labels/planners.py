@@ -1,63 +1,92 @@
-"""The exact planners that can be asked for labels, by name."""
+"""Ask an exact planner about guide paths over one scene or many, in this process."""
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_many
+from jaxleas.labels.phase_planners import judge_by_phases, mean_step
+from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.verdict import Verdict
 from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, InputError
-
-PLANNERS = ("sampling",)
-
-
-def require_planner(name: str) -> None:
-    """Refuse a planner that does not exist.
-
-    Raises:
-        InputError: says which do.
-    """
-    if name not in PLANNERS:
-        raise InputError(
-            f"there is no planner {name!r} for labels; there are {', '.join(PLANNERS)}"
-        )
+from jaxleas.types import GuidePath
 
 
 def judge(
     planner: str,
     scene: Scene,
     guide_paths: Sequence[GuidePath],
-    settings: SamplingSettings,
+    settings: PlannerSettings | None = None,
     first: int = 0,
 ) -> list[Verdict]:
     """Ask an exact planner about guide paths over one scene.
 
     Args:
-        planner: its name.
+        planner: its name: sampling, mip or sl1m.
         scene: to walk on.
         guide_paths: to be judged.
-        settings: of the planner.
+        settings: of the planner; its defaults if None.
         first: number of the first guide path in its file.
+
+    Raises:
+        InputError: planner and settings do not fit, or a guide path cannot be used.
     """
-    require_planner(planner)
-    plans = plan_many(scene, guide_paths, settings)
-    return [
-        _verdict(first + number, len(path), plan)
-        for number, (path, plan) in enumerate(zip(guide_paths, plans, strict=True))
-    ]
+    return judge_over(planner, [scene], guide_paths, [0] * len(guide_paths), settings, first)
 
 
-def _verdict(number: int, length: int, plan: SamplingPlan) -> Verdict:
+def judge_over(
+    planner: str,
+    scenes: Sequence[Scene],
+    guide_paths: Sequence[GuidePath],
+    scene_index: Sequence[int],
+    settings: PlannerSettings | None = None,
+    first: int = 0,
+) -> list[Verdict]:
+    """Ask an exact planner about guide paths, each over one of several scenes.
+
+    Args:
+        planner: its name.
+        scenes: to walk on.
+        guide_paths: to be judged.
+        scene_index: of each guide path's scene.
+        settings: of the planner; its defaults if None.
+        first: number of the first guide path.
+
+    Returns:
+        Verdicts in the order of the guide paths.
+    """
+    chosen = require_settings(planner, settings)
+    if not isinstance(chosen, SamplingSettings):
+        return [
+            judge_by_phases(scenes[index], path, chosen, first + number)
+            for number, (path, index) in enumerate(zip(guide_paths, scene_index, strict=True))
+        ]
+    verdicts: list[Verdict | None] = [None] * len(guide_paths)
+    index = np.asarray(scene_index, dtype=np.int64)
+    for which in np.unique(index).tolist():
+        numbers = np.flatnonzero(index == which).tolist()
+        plans = plan_many(scenes[which], [guide_paths[n] for n in numbers], chosen)
+        for number, plan in zip(numbers, plans, strict=True):
+            verdicts[number] = _verdict(first + number, guide_paths[number], plan)
+    return [verdict for verdict in verdicts if verdict is not None]
+
+
+def _verdict(number: int, path: GuidePath, plan: SamplingPlan) -> Verdict:
     stood = len(plan) > 0
     return Verdict(
         path=number,
+        decided=True,
         success=plan.success,
         last_index=plan.last_index,
-        length=length,
+        length=len(path),
         reached=plan.reached,
         steps=plan.steps,
+        mean_step=mean_step(path, plan.last_index, plan.steps),
         repositions=plan.repositions,
         least_robustness=float(plan.robustness.min()) if stood else None,
         mean_robustness=float(plan.robustness.mean()) if stood else None,
+        undecided=None,
+        combinations=None,
         reason=plan.reason,
         seconds=plan.seconds,
     )

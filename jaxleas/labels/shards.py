@@ -6,12 +6,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.files import read_json, write_json
+from jaxleas.labels.settings import PlannerSettings, seed_of
 from jaxleas.labels.verdict import Verdict, verdict_from_json, verdict_to_json
 from jaxleas.types.errors import InputError
 
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,15 @@ class Shard:
     guides: Path
     scene: Path
     planner: str
-    settings: SamplingSettings
+    settings: PlannerSettings
     first: int
     last: int
     out: Path
     provenance: dict[str, Any]
+
+    def __len__(self) -> int:
+        """Return the number of guide paths."""
+        return self.last - self.first
 
     @property
     def is_done(self) -> bool:
@@ -58,14 +62,14 @@ class Shard:
 
 
 def provenance_of(
-    guides: Path, scene: Path, planner: str, settings: SamplingSettings
+    guides: Path, scene: Path, planner: str, settings: PlannerSettings
 ) -> dict[str, Any]:
     """Return where verdicts come from: planner, version, parameters, terrain, seed, guide paths."""
     return {
         "planner": planner,
         "jaxleas": version("jaxleas"),
         "parameters": settings.model_dump(mode="json"),
-        "seed": settings.seed,
+        "seed": seed_of(settings),
         "scene": {"file": scene.name, "sha256": _sha256(scene)},
         "guides": {"file": guides.name, "sha256": _sha256(guides)},
     }

@@ -5,7 +5,16 @@ import pytest
 
 from jaxleas.contacts.sampling import SamplingSettings, plan_contacts
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import label_shards, plan_shards, read_verdicts
+from jaxleas.labels import (
+    Here,
+    MipSettings,
+    ProcessWorkers,
+    Sl1mSettings,
+    judge_shard,
+    label_shards,
+    plan_shards,
+    read_verdicts,
+)
 from jaxleas.labels.commands import label
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
@@ -31,7 +40,7 @@ def shards_of(folder, settings=SETTINGS):
 def test_verdicts_are_those_of_the_planner_with_provenance(work):
     folder, paths = work
     counted = []
-    assert label_shards(shards_of(folder), 1, counted.append) == (5, 0)
+    assert label_shards(shards_of(folder), Here(), counted.append) == (5, 0)
     assert sum(counted) == 5
     found = read_verdicts(folder / "out")
     assert [verdict.path for _, verdict in found] == list(range(5))
@@ -49,31 +58,35 @@ def test_verdicts_are_those_of_the_planner_with_provenance(work):
 
 def test_only_what_is_missing_is_judged_again(work):
     folder, _ = work
-    label_shards(shards_of(folder), 1, lambda count: None)
+    label_shards(shards_of(folder), Here(), lambda count: None)
     files = sorted((folder / "out").rglob("*.json"))
     assert len(files) == 3
     times = [path.stat().st_mtime_ns for path in files]
     files[1].unlink()
-    assert label_shards(shards_of(folder), 1, lambda count: None) == (2, 3)
+    assert label_shards(shards_of(folder), Here(), lambda count: None) == (2, 3)
     assert files[1].exists()
     assert [files[0].stat().st_mtime_ns, files[2].stat().st_mtime_ns] == [times[0], times[2]]
 
 
 def test_verdicts_of_other_settings_are_not_mixed_in(work):
     folder, _ = work
-    label_shards(shards_of(folder), 1, lambda count: None)
+    label_shards(shards_of(folder), Here(), lambda count: None)
     with pytest.raises(InputError, match="with other parameters and seed"):
-        label_shards(shards_of(folder, SamplingSettings(seed=1)), 1, lambda count: None)
+        label_shards(shards_of(folder, SamplingSettings(seed=1)), Here(), lambda count: None)
 
 
 @pytest.mark.slow
 def test_two_processes_say_the_same_as_one(work):
     folder, _ = work
-    label_shards(shards_of(folder), 1, lambda count: None)
+    label_shards(shards_of(folder), Here(), lambda count: None)
     alone = [verdict for _, verdict in read_verdicts(folder / "out")]
     for path in (folder / "out").rglob("*.json"):
         path.unlink()
-    assert label_shards(shards_of(folder), 2, lambda count: None) == (5, 0)
+    workers = ProcessWorkers(2)
+    try:
+        assert label_shards(shards_of(folder), workers, lambda count: None) == (5, 0)
+    finally:
+        workers.close()
     together = [verdict for _, verdict in read_verdicts(folder / "out")]
     for one, other in zip(alone, together, strict=True):
         assert (one.path, one.success, one.last_index) == (
@@ -91,6 +104,30 @@ def test_the_command_says_how_many_succeed(work, capsys):
     assert "0 judged now" in capsys.readouterr().out
 
 
+def test_a_shard_written_by_a_worker_that_died_is_not_judged_twice(work):
+    folder, _ = work
+    shard = shards_of(folder)[0]
+    judge_shard(shard)
+    written = shard.out.stat().st_mtime_ns
+    assert judge_shard(shard) == 2
+    assert shard.out.stat().st_mtime_ns == written
+
+
+@pytest.mark.parametrize("settings", [MipSettings(keep_every=20), Sl1mSettings(max_combinations=9)])
+def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
+    folder, _ = work
+    name = "sl1m" if isinstance(settings, Sl1mSettings) else "mip"
+    shards = plan_shards(
+        [folder / "walks.npz"], folder / "hole.json", name, settings, folder / "out"
+    )
+    assert label_shards(shards, Here(), lambda count: None) == (5, 0)
+    for provenance, verdict in read_verdicts(folder / "out"):
+        assert provenance["planner"] == name
+        assert type(settings)(**provenance["parameters"]) == settings
+        assert provenance["seed"] is None
+        assert verdict.decided
+
+
 def test_bad_input_is_one_sentence(work):
     folder, _ = work
     with pytest.raises(InputError, match="no planner 'magic'"):
@@ -99,6 +136,19 @@ def test_bad_input_is_one_sentence(work):
         plan_shards(
             [folder / "walks.npz"] * 2, folder / "hole.json", "sampling", SETTINGS, folder / "out"
         )
+    with pytest.raises(InputError, match="takes MipSettings, not SamplingSettings"):
+        plan_shards([folder / "walks.npz"], folder / "hole.json", "mip", SETTINGS, folder / "out")
+    with pytest.raises(InputError, match="--samples is for the planner sampling, not for mip"):
+        label(
+            [folder / "walks.npz"],
+            scene=folder / "hole.json",
+            out=folder / "out",
+            planner="mip",
+            samples=7,
+        )
+    with pytest.raises(InputError, match="--keep-every 0: input should be greater than 0"):
+        label([folder / "walks.npz"], scene=folder / "hole.json", out=folder / "o", keep_every=0)
+    assert not (folder / "out").exists()
     with pytest.raises(InputError, match="--processes is 0"):
         label([folder / "walks.npz"], scene=folder / "hole.json", out=folder / "out", processes=0)
     with pytest.raises(InputError, match="holds no verdicts"):

@@ -1,0 +1,157 @@
+"""A judge: many guide paths over many scenes in one call, over workers that stay (T 4.2)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from jaxleas.contacts.sampling import SamplingSettings
+from jaxleas.labels.planners import judge_over
+from jaxleas.labels.settings import PlannerSettings, require_settings
+from jaxleas.labels.verdict import Verdict
+from jaxleas.labels.workers import Here, ProcessWorkers, Workers, require_count
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath
+from jaxleas.types.errors import InputError
+
+_MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
+"""Guide paths: enough to work on abreast, few enough to do again when a worker dies."""
+_TASKS_EACH = 4  # for every worker, so that all end at about the same time
+
+
+@dataclass(frozen=True)
+class _Task:
+    planner: str
+    settings: PlannerSettings
+    scenes: tuple[Scene, ...]
+    paths: tuple[GuidePath, ...]
+    scene_index: tuple[int, ...]
+
+
+class Judge:
+    """An exact planner and the workers that run it; start-up is paid once.
+
+        with Judge("mip", processes=2) as judge:
+            verdicts = judge.judge(scenes, paths, scene_index)
+
+    Attributes:
+        planner: its name: sampling, mip or sl1m.
+        settings: of the planner.
+    """
+
+    def __init__(
+        self,
+        planner: str,
+        settings: PlannerSettings | None = None,
+        processes: int = 1,
+        workers: Workers | None = None,
+    ) -> None:
+        """Choose planner and workers.
+
+        Args:
+            planner: its name.
+            settings: of the planner; its defaults if None.
+            processes: working at the same time; 1 works in this process.
+            workers: instead of processes.
+
+        Raises:
+            InputError: planner and settings do not fit, or there are no processes.
+        """
+        self.planner = planner
+        self.settings = require_settings(planner, settings)
+        require_count(processes)
+        self._workers = workers or (Here() if processes == 1 else ProcessWorkers(processes))
+
+    def judge(
+        self,
+        scenes: Sequence[Scene],
+        paths: Sequence[GuidePath],
+        scene_index: Sequence[int] | np.ndarray,
+        on_done: Callable[[int], None] = lambda count: None,
+    ) -> list[Verdict]:
+        """Judge guide paths, each over one of the scenes.
+
+        After Ctrl-C the judge can be asked again.
+
+        Args:
+            scenes: to walk on.
+            paths: to be judged.
+            scene_index: of each path's scene.
+            on_done: called with a number of guide paths whenever so many more are done.
+
+        Returns:
+            Verdicts in the order of the paths, each with its number.
+
+        Raises:
+            InputError: a path or scene cannot be used, or the indices do not fit.
+            WorkerError: workers die over the same paths again and again.
+        """
+        index = np.asarray(scene_index, dtype=np.int64)
+        _require_fit(len(scenes), len(paths), index)
+        groups = self._groups(index)
+        tasks = [self._task(scenes, paths, index, group) for group in groups]
+        verdicts: list[Verdict | None] = [None] * len(paths)
+        for number, answers in self._workers.run(_judge_task, tasks):
+            for path, verdict in zip(groups[number].tolist(), answers, strict=True):
+                verdicts[path] = replace(verdict, path=path)
+            on_done(len(answers))
+        return [verdict for verdict in verdicts if verdict is not None]
+
+    def close(self) -> None:
+        """Let the workers go."""
+        self._workers.close()
+
+    def __enter__(self) -> Self:
+        """Return the judge."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Let the workers go."""
+        self.close()
+
+    def _groups(self, index: np.ndarray) -> list[np.ndarray]:
+        """Return the paths of each task: those over one scene together."""
+        order = np.argsort(index, kind="stable")
+        share = -(-len(index) // (_TASKS_EACH * self._workers.count))
+        size = max(1, min(_MOST_A_TASK[self.planner], share))
+        if isinstance(self.settings, SamplingSettings):
+            size = max(size, min(16, _MOST_A_TASK[self.planner]))
+        return [order[first : first + size] for first in range(0, len(order), size)]
+
+    def _task(
+        self,
+        scenes: Sequence[Scene],
+        paths: Sequence[GuidePath],
+        index: np.ndarray,
+        group: np.ndarray,
+    ) -> _Task:
+        used, local = np.unique(index[group], return_inverse=True)
+        return _Task(
+            self.planner,
+            self.settings,
+            tuple(scenes[each] for each in used),
+            tuple(paths[each] for each in group),
+            tuple(local.tolist()),
+        )
+
+
+def _judge_task(task: _Task) -> list[Verdict]:
+    return judge_over(task.planner, task.scenes, task.paths, task.scene_index, task.settings)
+
+
+def _require_fit(scenes: int, paths: int, index: np.ndarray) -> None:
+    if index.shape != (paths,):
+        raise InputError(f"{paths} guide paths need as many scene indices, not {index.shape}")
+    if paths and not (index.min() >= 0 and index.max() < scenes):
+        wrong = int(np.flatnonzero((index < 0) | (index >= scenes))[0])
+        raise InputError(
+            f"guide path {wrong} is over scene {int(index[wrong])}; there are {scenes} scenes,"
+            " counted from 0"
+        )

@@ -1,0 +1,97 @@
+"""What each exact planner can be told when it judges guide paths: part of a label's provenance."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, ValidationError
+
+from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
+from jaxleas.contacts.problem import Model
+from jaxleas.contacts.sampling import SamplingSettings
+from jaxleas.contacts.sl1m import MAX_COMBINATIONS
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+
+class PhaseSettings(Strict):
+    """How a guide path becomes a contact problem (T 5.2.3), and how long a planner may take."""
+
+    keep_every: PositiveInt = EVERY
+    """one guide configuration in so many becomes a step, N_ref"""
+    model: Model = "two_com"
+    """two_com (with the centre of mass) or feet"""
+    candidates: Candidates = "window"
+    """surfaces in a window around the root, or in the moving leg's range of motion"""
+    window: Annotated[float, Field(gt=0.0, lt=100.0)] = WINDOW
+    """edge of the window [m]"""
+    first_foot: Literal["LF", "RF"] = "LF"
+    """which moves first"""
+    time_limit: PositiveFloat = 60.0
+    """for one guide path [s]; when it is over, the verdict is undecided"""
+
+
+class MipSettings(PhaseSettings):
+    """Settings of the mixed-integer planner."""
+
+
+class Sl1mSettings(PhaseSettings):
+    """Settings of SL1M."""
+
+    max_combinations: PositiveInt = MAX_COMBINATIONS
+    """of surfaces for the undecided steps, after which it gives up"""
+
+
+PlannerSettings = SamplingSettings | MipSettings | Sl1mSettings
+SETTINGS: dict[str, type[PlannerSettings]] = {
+    "sampling": SamplingSettings,
+    "mip": MipSettings,
+    "sl1m": Sl1mSettings,
+}
+"""The exact planners that can be asked for labels, each with the kind of its settings."""
+
+
+def require_settings(planner: str, settings: PlannerSettings | None) -> PlannerSettings:
+    """Return the settings of a planner: those given, if they are its own, or its defaults.
+
+    Raises:
+        InputError: there is no such planner, or the settings are another's.
+    """
+    kind = SETTINGS.get(planner)
+    if kind is None:
+        raise InputError(
+            f"there is no planner {planner!r} for labels; there are {', '.join(SETTINGS)}"
+        )
+    if settings is None:
+        return kind()
+    if type(settings) is not kind:
+        raise InputError(
+            f"the {planner} planner takes {kind.__name__}, not {type(settings).__name__}"
+        )
+    return settings
+
+
+def settings_from(planner: str, **given: Any) -> PlannerSettings:
+    """Return a planner's settings with what is given; None means the planner's own default.
+
+    Raises:
+        InputError: the planner has no such setting, or the value is out of range.
+    """
+    kind = type(require_settings(planner, None))
+    chosen = {name: value for name, value in given.items() if value is not None}
+    unknown = next((name for name in chosen if name not in kind.model_fields), None)
+    if unknown is not None:
+        owners = [name for name, each in SETTINGS.items() if unknown in each.model_fields]
+        raise InputError(
+            f"--{unknown.replace('_', '-')} is for the planner {' and '.join(owners) or 'of none'},"
+            f" not for {planner}"
+        )
+    try:
+        return kind(**chosen)
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise InputError(f"--{option} {first['input']}: {first['msg'].lower()}") from error
+
+
+def seed_of(settings: PlannerSettings) -> NonNegativeInt | None:
+    """Return the seed that a planner draws from; None for one that draws nothing."""
+    return settings.seed if isinstance(settings, SamplingSettings) else None
