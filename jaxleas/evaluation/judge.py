@@ -134,7 +134,7 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
     low, high = wilson_interval(good, count)
     length, straight = path_lengths(walked)
     arrived = reached & (straight > 0.0)
-    fraction = _rounded(reached.mean()), _rounded(invalid.mean())
+    fraction = rounded(reached.mean()), rounded(invalid.mean())
     return CellResult(
         name=cell.name,
         yaw=cell.yaw,
@@ -144,9 +144,9 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
         starts=count,
         reached=fraction[0],
         invalid=fraction[1],
-        stopped=_rounded(1.0 - fraction[0] - fraction[1]),
-        low=_rounded(low),
-        high=_rounded(high),
+        stopped=rounded(1.0 - fraction[0] - fraction[1]),
+        low=rounded(low),
+        high=rounded(high),
         expectation=cell.expectation,
         mean_time=_mean(walked.end[reached] * time_step),
         mean_length=_mean(length[reached]),
@@ -181,16 +181,17 @@ def _areas(walked: Walk) -> dict[str, AreaResult]:
     return {
         name: AreaResult(
             starts=int((area == index).sum()),
-            reached=_rounded(walked.reached[area == index].mean()),
-            invalid=_rounded(walked.invalid[area == index].mean()),
+            reached=rounded(walked.reached[area == index].mean()),
+            invalid=rounded(walked.invalid[area == index].mean()),
         )
         for index, name in enumerate(AREA_NAMES)
     }
 
 
 def _mean(values: Float[np.ndarray, " N"]) -> float | None:
-    return _rounded(values.mean()) if len(values) else None
+    return rounded(values.mean()) if len(values) else None
 
 
-def _rounded(value: float | np.floating) -> float:
+def rounded(value: float | np.floating) -> float:
+    """Return a fraction or length as results carry it."""
     return abs(round(float(value), DIGITS))

@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -48,9 +48,11 @@ class CellResult(Strict):
     planned: Fraction | None = None
     """The goal was reached and the planner made contacts for the whole guide path."""
     robustness: float | None = None
-    """Mean over the postures of a contact plan, mean over plans [N]."""
+    """Mean over the postures of a contact plan, mean over the plans that succeeded [N]."""
     mean_step: Length | None = None
-    """Of the contact plans [m]."""
+    """Way of the root for each step, mean over the plans that succeeded [m]."""
+    undecided: Fraction | None = None
+    """The planner ran out of time; counted as not planned."""
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of the main fraction."""
@@ -99,6 +101,10 @@ class Evaluation(Strict):
     """Where it was read from."""
     fingerprint: str | None = None
     """SHA-256 of its file: whether it is still the one that was judged."""
+    policies: dict[str, str] = Field(default_factory=dict)
+    """Further policies: SHA-256 of the file of each, by the method's name."""
+    planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    """Settings of the exact planners, by name."""
     robot: str
     seed: int
     created: str

@@ -58,12 +58,14 @@ class Starts:
         map_index: of each start's scene.
         waypoints: to be reached in order, the goal last: x, y and the root height there [m].
         area: which of its scene's start areas each start lies in (0 near, 1 far).
+        scene: which of the cell's scenarios each start lies in.
     """
 
     motion: RootMotion
     map_index: Int[Array, " N"]
     waypoints: Float[Array, "N W 3"]
     area: Int[np.ndarray, " N"]
+    scene: Int[np.ndarray, " N"]
 
 
 def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> Starts:
@@ -115,7 +117,7 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
         raise InputError(
             f"no valid start in the area {where} of scene {cell.name!r} after {ROUNDS} draws"
         )
-    return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area)
+    return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area, scene)
 
 
 def _way_ahead(

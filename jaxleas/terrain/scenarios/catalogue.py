@@ -67,7 +67,7 @@ def scene_with_areas(scenario: Scenario) -> Scene:
     """
     starts = scenario.start_areas
     names = ("start",) if len(starts) == 1 else ("start_near", "start_far")
-    areas = dict(zip(names, starts, strict=True))
+    areas: dict[str, Area] = dict(zip(names, starts, strict=True))
     if not scenario.waypoints:
         areas["goal"] = scenario.goal_area
     for number, point in enumerate(scenario.waypoints, start=1):
