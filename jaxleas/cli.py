@@ -24,6 +24,7 @@ COMMANDS = {
         "make a height map of a mesh or image",
     ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
+    "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
     "evaluate": ("jaxleas.evaluation.commands", "evaluate", "judge a policy on terrains unseen"),
     "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
     "export": (

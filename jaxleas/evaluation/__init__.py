@@ -1,5 +1,8 @@
 """Evaluation: named suites, success tables with intervals, pictures, the run report."""
 
+from jaxleas.evaluation.comparison import compare
+from jaxleas.evaluation.contenders import Contenders, make_contenders
+from jaxleas.evaluation.exact import ask, judge_exact, summarise_plans, walker
 from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.report import write_report
 from jaxleas.evaluation.result_file import (
@@ -15,11 +18,18 @@ __all__ = [
     "SUITES",
     "Cell",
     "CellResult",
+    "Contenders",
     "Evaluation",
     "Suite",
+    "ask",
+    "compare",
     "judge",
+    "judge_exact",
+    "make_contenders",
     "make_suite",
     "read_evaluation",
+    "summarise_plans",
+    "walker",
     "wilson_interval",
     "write_evaluation",
     "write_report",

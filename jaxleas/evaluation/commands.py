@@ -1,7 +1,11 @@
 """The commands `jaxleas evaluate` and `jaxleas report`."""
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 
+from jaxleas.evaluation.comparison import compare, side_by_side_file
+from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import (
     examine,
     keep_evaluation,
@@ -10,9 +14,12 @@ from jaxleas.evaluation.examination import (
 )
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import Evaluation, write_evaluation
+from jaxleas.evaluation.scene_pictures import draw_side_by_side
+from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.evaluation.table import plain_table
+from jaxleas.labels.settings import SETTINGS, require_settings, settings_from
 from jaxleas.types.errors import InputError
 
 
@@ -23,34 +30,106 @@ def evaluate(
     json: Path | None = None,
     baseline: bool = True,
     seed: int = 0,
+    held_out: bool = False,
+    planners: Sequence[str] | None = None,
+    methods: Sequence[str] | None = None,
+    policies: Sequence[str] | None = None,
+    time_limit: float | None = None,
+    processes: int | None = None,
+    pictures: Path | None = None,
 ) -> Evaluation:
     """Judge a policy on terrains it was never trained on, and print the table.
 
+    With --planners (and for the suite thesis always) methods stand side by side, judged by exact
+    contact planners; the result file grows cell by cell, and the same command goes on where it was
+    interrupted.
+
     Args:
         run: a run folder, a policy.npz or an .onnx file.
-        suite: transitions, hole, wall, circuit or dead_end.
+        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain or thesis.
         starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
         json: where to write the result as well; a run folder keeps the one of most starts in
             RUN/evaluation/.
-        baseline: judge RB-Lin beside it.
+        baseline: judge RB-Lin and RB-Kino beside it.
         seed: of scenes and starts; training never sees any of them.
+        held_out: judge on terrain to choose and tune by, not on that of evaluation.
+        planners: sampling, mip, sl1m or none; all three for the suite thesis.
+        methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
+            policies; by default all.
+        policies: further ones, each as name=path.
+        time_limit: for one guide path, of mip and sl1m [s]; what is not decided by then counts as
+            not planned.
+        processes: that plan contacts at the same time; all cores by default.
+        pictures: folder for pictures of the guide paths.
 
     Raises:
-        InputError: there is no such policy or suite, or a number is out of range.
+        InputError: there is no such policy, suite, planner or method, or a number is out of range.
     """
-    make_suite(suite, starts=1)  # a misspelt name is told before anything is loaded
-    if starts is not None and starts < 1:
-        raise InputError(f"starts = {starts}: a cell needs at least 1 start")
+    plan = make_suite(suite, starts, seed, held_out)  # mistakes are told before anything is loaded
+    side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
+    names = _planners(suite, planners)
+    further = parse_policies(_words(policies) or ())
+    if processes is not None and processes < 1:
+        raise InputError(f"--processes is {processes}; give 1 or more")
     candidate = load_candidate(run)
+    folder = Path(run) if Path(run).is_dir() else None
+    if not side_by_side:
+        with Reporter() as reporter:
+            evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
+        print(plain_table(evaluation))
+        if folder is not None:
+            keep_evaluation(folder, candidate, evaluation)
+        if json is not None:
+            write_evaluation(json, evaluation)
+            print(f"written: {json}")
+        return evaluation
+    contenders = make_contenders(candidate, further, _words(methods))
+    file = json
+    if file is None and folder is not None:
+        file = side_by_side_file(folder, plan)
     with Reporter() as reporter:
-        evaluation = examine(candidate, suite, starts, seed, baseline, reporter.say)
-    print(plain_table(evaluation))
-    if Path(run).is_dir():
-        keep_evaluation(Path(run), candidate, evaluation)
-    if json is not None:
-        write_evaluation(json, evaluation)
-        print(f"written: {json}")
+        evaluation = compare(
+            candidate,
+            contenders,
+            plan,
+            names,
+            settings={name: settings_from(name, **_limit(name, time_limit)) for name in names},
+            processes=processes or os.cpu_count() or 1,
+            file=file,
+            say=reporter.say,
+        )
+    print(table_of(evaluation))
+    if file is not None:
+        print(f"written: {file}")
+    if pictures is not None:
+        with Reporter() as reporter:
+            drawn = draw_side_by_side(
+                candidate.env, contenders.walkers, plan, names[:1], pictures, reporter.say
+            )
+        print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation
+
+
+def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
+    names = _words(given)
+    if names is None:
+        return tuple(SETTINGS) if suite == "thesis" else ()
+    if names == ["none"]:
+        return ()
+    for name in names:
+        require_settings(name, None)
+    return tuple(dict.fromkeys(names))
+
+
+def _limit(planner: str, time_limit: float | None) -> dict[str, float | None]:
+    return {"time_limit": time_limit} if "time_limit" in SETTINGS[planner].model_fields else {}
+
+
+def _words(given: Sequence[str] | None) -> list[str] | None:
+    """Return what was given as words or separated by commas; None where nothing was."""
+    if given is None:
+        return None
+    return [word for text in given for word in text.split(",") if word]
 
 
 def report(run: Path, out: Path | None = None) -> Path:

@@ -11,14 +11,16 @@ from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
-from jaxleas.evaluation.suites import SUITES, Suite, make_suite
+from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
+from jaxleas.guide.rb_kino import rb_kino
 from jaxleas.guide.rb_lin import rb_lin
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types.errors import InputError
 
-POLICY, BASELINE = "leas_p1", "rb_lin"
+POLICY = "leas_p1"
+BASELINES = {"rb_lin": rb_lin, "rb_kino": rb_kino}
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Candidate:
         path: it was loaded from.
         fingerprint: SHA-256 of its file.
         env: the task it was trained for.
-        methods: the policy as a steering method first, then RB-Lin.
+        methods: the policy as a steering method first, then the baselines.
     """
 
     path: Path
@@ -39,16 +41,17 @@ class Candidate:
 
 
 def load_candidate(path: str | Path) -> Candidate:
-    """Load a run folder, a policy.npz or an .onnx file, with RB-Lin to compare with.
+    """Load a run folder, a policy.npz or an .onnx file, with the baselines to compare with.
 
     Raises:
         InputError: there is no policy, or it cannot be used.
     """
     policy = load_policy(path)
     env = SteeringEnv(policy.config)
+    limits, speed = env.config.limits, env.config.desired_speed
     methods = {
         POLICY: leas(env, policy),
-        BASELINE: rb_lin(env.config.limits, env.config.desired_speed),
+        **{name: make(limits, speed) for name, make in BASELINES.items()},
     }
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
@@ -71,7 +74,7 @@ def examine(
         suite: one of SUITES, or one made already.
         starts: a cell; by default what the suite usually has.
         seed: of scenes and starts, within the evaluation range.
-        baseline: judge RB-Lin beside it.
+        baseline: judge RB-Lin and RB-Kino beside it.
         progress: told which cell is walked now.
         grounds: that hold the suite's scenes, if made already.
 
@@ -81,7 +84,7 @@ def examine(
     begin = time.perf_counter()
     plan = make_suite(suite, starts, seed) if isinstance(suite, str) else suite
     methods = {
-        name: method for name, method in candidate.methods.items() if baseline or name != BASELINE
+        name: method for name, method in candidate.methods.items() if baseline or name == POLICY
     }
     cells = judge(candidate.env, methods, plan, progress, grounds)
     return Evaluation(
@@ -118,7 +121,7 @@ def run_evaluations(
         progress: told which cell is walked now.
     """
     evaluations = []
-    for name in SUITES:
+    for name in REPORTED:
         path = evaluation_file(run, name)
         evaluation = kept_evaluation(path, candidate)
         if evaluation is None:

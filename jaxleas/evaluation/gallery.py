@@ -16,6 +16,7 @@ from jaxleas.evaluation.pictures import (
     REACHED,
     RING,
     STOPPED,
+    UNPLANNED,
     View,
     choose_examples,
     draw_profile,
@@ -143,7 +144,7 @@ def _transitions(
     for row, each in zip(axes, shown, strict=True):
         for ax, method in zip(row, methods, strict=True):
             draw_view(ax, _view(env, grounds, each, method, 3, _title(each, method)))
-    _legend(figure)
+    legend(figure)
     return figure
 
 
@@ -155,7 +156,7 @@ def _detours(
     for row, each in zip(axes, shown, strict=True):
         for ax, method in zip(row, methods, strict=True):
             draw_view(ax, _view(env, grounds, each, method, 6, _title(each, method)))
-    _legend(figure)
+    legend(figure)
     return figure
 
 
@@ -169,14 +170,14 @@ def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) 
     widest = max(ax.get_xlim()[1] for ax in axes)
     for ax in axes:
         ax.set_xlim(right=widest)  # one scale for all
-    _legend(figure)
+    legend(figure)
     return figure
 
 
 def _single(env: SteeringEnv, grounds: Grounds, shown: _Shown, method: str) -> "Figure":
     figure = _figure(9.0, 6.0)
     draw_view(figure.subplots(), _view(env, grounds, shown, method, 1, _title(shown, method)))
-    _legend(figure)
+    legend(figure)
     return figure
 
 
@@ -201,21 +202,25 @@ def _figure(width: float, height: float) -> "Figure":
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def _legend(figure: "Figure") -> None:
+def legend(figure: "Figure", planner: str | None = None) -> None:
+    """Explain the colours of top views; with a planner's name, those of its answers too."""
     from matplotlib.lines import Line2D
 
     def dot(colour: str, edge: str, label: str) -> Line2D:
         return Line2D([], [], marker="o", linestyle="", color=colour, mec=edge, label=label)
 
     handles = [
-        dot(REACHED, "#5c4a00", "start: reached"),
+        dot(REACHED, "#5c4a00", f"start: {f'planned by {planner}' if planner else 'reached'}"),
+        *([dot(UNPLANNED, UNPLANNED, "start: reached, not planned")] if planner else []),
         dot(STOPPED, RING, "start: stopped"),
         dot(INVALID, INVALID, "start: invalid"),
         dot(GOAL, GOAL, "goal"),
         Line2D([], [], color=PATH, linewidth=2, label="path, heading"),
         Line2D([], [], marker="x", linestyle="", color=GOAL, mew=2, label="invalid configuration"),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=8)
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=8
+    )
 
 
 def _picture(name: str, caption: str, figure: "Figure") -> Picture:

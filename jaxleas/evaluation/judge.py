@@ -13,6 +13,7 @@ from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.guide.rollout import RollOut, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.types import GuidePath
 
 AREA_NAMES = ("near", "far")
 DIGITS = 6  # of fractions and lengths in results: exact for a million starts
@@ -26,6 +27,7 @@ class Walk:
         starts: where they began and where they were sent.
         position: of the roots [m]; constant after the end.
         yaw: heading [rad].
+        velocity: of the roots [m/s].
         valid: whether each configuration satisfies the condition.
         end: index of each roll-out's last configuration.
         reached: the goal, valid all the way.
@@ -35,6 +37,7 @@ class Walk:
     starts: Starts
     position: Float[np.ndarray, "N T+1 3"]
     yaw: Float[np.ndarray, "N T+1"]
+    velocity: Float[np.ndarray, "N T+1 3"]
     valid: Bool[np.ndarray, "N T+1"]
     end: Int[np.ndarray, " N"]
     reached: Bool[np.ndarray, " N"]
@@ -43,6 +46,17 @@ class Walk:
     def path(self, index: int) -> Float[np.ndarray, "T 3"]:
         """Return the root positions of one roll-out up to its end [m]."""
         return self.position[index, : self.end[index] + 1]
+
+    def guide_path(self, index: int, time_step: float) -> GuidePath:
+        """Return one roll-out up to its end, with `time_step` [s] between configurations."""
+        until = self.end[index] + 1
+        return GuidePath(
+            time=np.arange(until) * time_step,
+            position=self.position[index, :until],
+            yaw=self.yaw[index, :until],
+            velocity=self.velocity[index, :until],
+            valid=self.valid[index, :until],
+        )
 
 
 def walk(
@@ -63,6 +77,7 @@ def walk(
         starts=starts,
         position=np.asarray(result.position),
         yaw=np.asarray(result.yaw),
+        velocity=np.asarray(result.velocity),
         valid=np.asarray(result.valid),
         end=np.asarray(result.end),
         reached=np.asarray(result.reached),
@@ -93,13 +108,13 @@ def judge(
     grounds = make_grounds(suite.cells) if grounds is None else grounds
     results = []
     for position, cell in enumerate(suite.cells):
-        starts = draw_starts(env, grounds, cell, suite.seed)
+        starts = draw_starts(env, grounds, cell, suite.stream())
         for name, method in methods.items():
             progress(
                 f"{suite.name} {position + 1}/{len(suite.cells)}:"
                 f" {name} on {cell.name} at {cell.yaw:.0f} deg"
             )
-            walked = walk(env, grounds, method, starts, suite.steps)
+            walked = walk(env, grounds, method, starts, suite.steps_of(cell))
             results.append(summarise(cell, name, walked, env.config.limits.time_step))
     return results
 
@@ -119,17 +134,19 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
     low, high = wilson_interval(good, count)
     length, straight = path_lengths(walked)
     arrived = reached & (straight > 0.0)
-    fraction = _rounded(reached.mean()), _rounded(invalid.mean())
+    fraction = rounded(reached.mean()), rounded(invalid.mean())
     return CellResult(
         name=cell.name,
         yaw=cell.yaw,
+        yaw_spread=cell.yaw_spread,
+        speed=cell.speed,
         method=method,
         starts=count,
         reached=fraction[0],
         invalid=fraction[1],
-        stopped=_rounded(1.0 - fraction[0] - fraction[1]),
-        low=_rounded(low),
-        high=_rounded(high),
+        stopped=rounded(1.0 - fraction[0] - fraction[1]),
+        low=rounded(low),
+        high=rounded(high),
         expectation=cell.expectation,
         mean_time=_mean(walked.end[reached] * time_step),
         mean_length=_mean(length[reached]),
@@ -164,16 +181,17 @@ def _areas(walked: Walk) -> dict[str, AreaResult]:
     return {
         name: AreaResult(
             starts=int((area == index).sum()),
-            reached=_rounded(walked.reached[area == index].mean()),
-            invalid=_rounded(walked.invalid[area == index].mean()),
+            reached=rounded(walked.reached[area == index].mean()),
+            invalid=rounded(walked.invalid[area == index].mean()),
         )
         for index, name in enumerate(AREA_NAMES)
     }
 
 
 def _mean(values: Float[np.ndarray, " N"]) -> float | None:
-    return _rounded(values.mean()) if len(values) else None
+    return rounded(values.mean()) if len(values) else None
 
 
-def _rounded(value: float | np.floating) -> float:
+def rounded(value: float | np.floating) -> float:
+    """Return a fraction or length as results carry it."""
     return abs(round(float(value), DIGITS))

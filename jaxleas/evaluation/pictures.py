@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.evaluation.judge import Walk
 from jaxleas.robots import Robot
@@ -15,7 +15,7 @@ from jaxleas.terrain.height_map import HeightMap
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-REACHED, INVALID, STOPPED = "#ffd21f", "#000000", "#ffffff"
+REACHED, UNPLANNED, INVALID, STOPPED = "#ffd21f", "#e0359b", "#000000", "#ffffff"
 PATH, GOAL, RING = "#1f5fd0", "#e02020", "#1f5fd0"
 ARROW_SPACING, ARROW_TURN = 0.3, 1.0
 """Between two heading arrows along a path [m], and in turning [rad]."""
@@ -38,6 +38,7 @@ class View:
         examples: which of them are drawn as paths.
         dots: how many of them are drawn as starts.
         radius: within which the goal is reached [m].
+        planned: of the roll-outs, those that an exact planner found contacts for; None: not asked.
     """
 
     title: str
@@ -46,6 +47,7 @@ class View:
     examples: Sequence[int]
     dots: int
     radius: float
+    planned: Bool[np.ndarray, " N"] | None = None
 
 
 def choose_examples(walk: Walk, count: int, among: int) -> list[int]:
@@ -76,8 +78,10 @@ def draw_view(ax: "Axes", view: View) -> None:
     walk = view.walk
     shown = np.arange(len(walk.reached)) < view.dots
     start = walk.position[:, 0, :2]
+    planned = walk.reached if view.planned is None else view.planned
     outcomes = (
-        (walk.reached, REACHED, "#5c4a00", 0.4),
+        (planned, REACHED, "#5c4a00", 0.4),
+        (walk.reached & ~planned, UNPLANNED, "#ffffff", 0.3),
         (~walk.reached & ~walk.invalid, STOPPED, RING, 1.2),
         (walk.invalid, INVALID, "#ffffff", 0.3),
     )

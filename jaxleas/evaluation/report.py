@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from jaxleas.evaluation.examination import BASELINE, POLICY, Candidate
+from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
 from jaxleas.evaluation.gallery import Picture, draw_gallery
 from jaxleas.evaluation.learning_curves import draw_learning_curves
 from jaxleas.evaluation.result_file import CellResult, Evaluation
@@ -158,7 +158,7 @@ def success_rows(evaluation: Evaluation | None) -> list[SuccessRow]:
         return []
     table = []
     for yaw in sorted({cell.yaw for cell in evaluation.cells}):
-        for method in (POLICY, BASELINE):
+        for method in (POLICY, *BASELINES):
             found = {
                 cell.name: cell
                 for cell in evaluation.cells
@@ -185,7 +185,7 @@ def _value(cell: CellResult | None) -> tuple[str, str]:
 
 def _ours(evaluation: Evaluation) -> list[CellResult]:
     """Return the cells of the policy itself."""
-    return [cell for cell in evaluation.cells if cell.method != BASELINE]
+    return [cell for cell in evaluation.cells if cell.method not in BASELINES]
 
 
 def _text(path: Path) -> str:

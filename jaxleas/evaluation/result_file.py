@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -30,8 +30,12 @@ class CellResult(Strict):
     name: str
     yaw: float
     """Heading at the start relative to the direction of crossing [deg]."""
+    yaw_spread: Length = 0.0
+    """Headings are uniform in `yaw` +- this, to either side [deg]."""
+    speed: Length = 0.0
+    """At the start, along the heading [m/s]."""
     method: str
-    """"leas_p1", "rb_lin", ..."""
+    """"leas_p1", "rb_lin", "rb_kino", ..."""
     planner: str | None = None
     """The exact contact planner that judged; null: the analytic conditions did."""
     starts: Count
@@ -42,14 +46,19 @@ class CellResult(Strict):
     stopped: Fraction
     """Valid to the end of the episode, without reaching the goal."""
     planned: Fraction | None = None
+    """The goal was reached and the planner made contacts for the whole guide path."""
     robustness: float | None = None
+    """Mean over the postures of a contact plan, mean over the plans that succeeded [N]."""
     mean_step: Length | None = None
-    """Of the contact plans [m]."""
+    """Way of the root for each step, mean over the plans that succeeded [m]."""
+    undecided: Fraction | None = None
+    """The planner ran out of time; counted as not planned."""
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of the main fraction."""
     expectation: Literal["cross", "stop"] = "cross"
-    """"cross": the main fraction is `reached`; "stop": it is 1 - `invalid`."""
+    """"cross": the main fraction is `planned` where a planner judged, else `reached`; "stop": it
+    is 1 - `invalid`."""
     mean_time: Length | None = None
     """To the goal, of those that reached it [s]."""
     mean_length: Length | None = None
@@ -62,10 +71,16 @@ class CellResult(Strict):
     @property
     def success(self) -> float:
         """The main fraction."""
-        return self.reached if self.expectation == "cross" else 1.0 - self.invalid
+        if self.expectation == "stop":
+            return 1.0 - self.invalid
+        return self.reached if self.planned is None else self.planned
 
     @model_validator(mode="after")
     def _adds_up(self) -> Self:
+        if (self.planned is None) != (self.planner is None):
+            raise ValueError("`planned` and `planner` go together")
+        if self.planned is not None and self.planned > self.reached + 1e-6:
+            raise ValueError(f"planned is {self.planned:g}, more than the {self.reached:g} reached")
         total = self.reached + self.invalid + self.stopped
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"reached + invalid + stopped is {total:g}, not 1")
@@ -86,6 +101,10 @@ class Evaluation(Strict):
     """Where it was read from."""
     fingerprint: str | None = None
     """SHA-256 of its file: whether it is still the one that was judged."""
+    policies: dict[str, str] = Field(default_factory=dict)
+    """Further policies: SHA-256 of the file of each, by the method's name."""
+    planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    """Settings of the exact planners, by name."""
     robot: str
     seed: int
     created: str

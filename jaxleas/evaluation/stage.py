@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from jaxleas.evaluation.starts import Grounds, make_grounds
-from jaxleas.evaluation.suites import STARTS_PER_SCENE, SUITES, Cell, Suite, make_suite
+from jaxleas.evaluation.suites import REPORTED, STARTS_PER_SCENE, Cell, Suite, make_suite
 
 LARGE = "transitions"
 """The suite with many scenes; a report only draws the first of each kind."""
@@ -33,7 +33,7 @@ def make_stage(starts: int | None = None, seed: int = 0) -> Stage:
         starts: a cell; by default what each suite usually has.
         seed: of scenes and starts.
     """
-    suites = {name: make_suite(name, starts, seed) for name in SUITES if name != LARGE}
+    suites = {name: make_suite(name, starts, seed) for name in REPORTED if name != LARGE}
     large = make_suite(LARGE, STARTS_PER_SCENE, seed)
     like = suites["hole"]  # drawn with as many starts and steps as another suite is judged with
     shown = {

@@ -1,4 +1,4 @@
-"""Where the robots of a cell stand before they walk: valid, at rest, at exactly the cell's yaw."""
+"""Where the robots of a cell begin: valid, upright, at the cell's heading and speed."""
 
 import zlib
 from collections.abc import Sequence
@@ -54,20 +54,22 @@ class Starts:
     """The starts of a cell.
 
     Attributes:
-        motion: of the roots, at rest.
+        motion: of the roots.
         map_index: of each start's scene.
         waypoints: to be reached in order, the goal last: x, y and the root height there [m].
         area: which of its scene's start areas each start lies in (0 near, 1 far).
+        scene: which of the cell's scenarios each start lies in.
     """
 
     motion: RootMotion
     map_index: Int[Array, " N"]
     waypoints: Float[Array, "N W 3"]
     area: Int[np.ndarray, " N"]
+    scene: Int[np.ndarray, " N"]
 
 
 def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> Starts:
-    """Draw the starts of a cell: uniform in the start areas, upright at walking height, at rest.
+    """Draw the starts of a cell: uniform in the start areas, upright at walking height.
 
     A start that violates the condition by itself is drawn again: it would be judged before it
     could move.
@@ -89,9 +91,8 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
     area, scene = number % areas_each, number // areas_each % len(cell.scenarios)
     chosen = [cell.scenarios[index] for index in scene]
     rectangle = np.array([each.start_areas[k] for each, k in zip(chosen, area, strict=True)])
-    heading = np.array([crossing_direction(each) for each in cell.scenarios])[scene]
+    aside = _headings_aside(cell, rng)
     map_index = jnp.asarray([grounds.index[id(each)] for each in chosen], dtype=jnp.int32)
-    yaw = jnp.asarray(_wrap(heading + np.deg2rad(cell.yaw)), dtype=jnp.float32)
 
     low, high = rectangle[:, 0::2], rectangle[:, 1::2]
     horizontal, valid = np.array(low), np.zeros(cell.starts, dtype=bool)
@@ -99,8 +100,14 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
     for _ in range(ROUNDS):
         drawn = rng.uniform(low, high)
         horizontal = np.where(valid[:, None], horizontal, drawn)
+        ahead = _way_ahead(cell, scene, goals[scene, 0, :2] - horizontal)
         motion, judged = _stand(
-            env, grounds.atlas, map_index, jnp.asarray(horizontal, dtype=jnp.float32), yaw
+            env,
+            grounds.atlas,
+            map_index,
+            jnp.asarray(horizontal, dtype=jnp.float32),
+            jnp.asarray(_wrap(ahead + aside), dtype=jnp.float32),
+            jnp.float32(cell.speed),
         )
         valid = np.asarray(judged)
         if valid.all():
@@ -110,7 +117,25 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
         raise InputError(
             f"no valid start in the area {where} of scene {cell.name!r} after {ROUNDS} draws"
         )
-    return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area)
+    return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area, scene)
+
+
+def _way_ahead(
+    cell: Cell, scene: Int[np.ndarray, " N"], to_goal: Float[np.ndarray, "N 2"]
+) -> Float[np.ndarray, " N"]:
+    """Return the direction that each start's heading is relative to [rad]."""
+    if cell.aim == "goal":
+        return np.arctan2(to_goal[:, 1], to_goal[:, 0])
+    return np.array([crossing_direction(each) for each in cell.scenarios])[scene]
+
+
+def _headings_aside(cell: Cell, rng: np.random.Generator) -> Float[np.ndarray, " N"]:
+    """Return how far each start's heading is off the way ahead [rad]."""
+    degrees = np.full(cell.starts, cell.yaw)
+    if cell.yaw_spread > 0.0:
+        degrees += rng.uniform(-cell.yaw_spread, cell.yaw_spread, size=cell.starts)
+        degrees *= rng.choice([-1.0, 1.0], size=cell.starts)
+    return np.deg2rad(degrees)
 
 
 def crossing_direction(scenario: Scenario) -> float:
@@ -156,10 +181,12 @@ def _stand(
     map_index: Int[Array, " N"],
     horizontal: Float[Array, "N 2"],
     yaw: Float[Array, " N"],
+    speed: Float[Array, ""],
 ) -> tuple[RootMotion, Array]:
     """Return roots at walking height above the ground, and whether they are valid there."""
     ground = atlas.height_at(map_index, horizontal[:, None, :])
     position = jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
-    motion = RootMotion(position=position, velocity=jnp.zeros_like(position), yaw=yaw)
+    ahead = jnp.stack([jnp.cos(yaw), jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1)
+    motion = RootMotion(position=position, velocity=speed * ahead, yaw=yaw)
     margin = env.condition(env.local_heights(atlas, map_index, motion), motion)
     return motion, (margin >= 0.0) & (ground[:, 0] > VOID)

@@ -1,21 +1,25 @@
 """Named suites of judgement: cells of scenes, starts and headings, never met in training."""
 
 import difflib
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from jaxleas.terrain.scenarios import Scenario, circuit, dead_end, hole, transition, wall
-from jaxleas.terrain.seeds import EVALUATION_SEED
+from jaxleas.evaluation.recipes import RECIPES, Expectation, Recipe, Row
+from jaxleas.terrain.scenarios import SCENARIOS, Scenario
+from jaxleas.terrain.seeds import EVALUATION_SEED, TUNING_SEED
 from jaxleas.types.errors import InputError
 
-Expectation = Literal["cross", "stop"]
-STARTS_PER_SCENE = 20
+STARTS_PER_SCENE = RECIPES["transitions"].starts_per_scene
 """A cell spreads its starts over many different scenes, about so many on each."""
 SCENES_PER_SEED = 10_000
-"""Scenes of two evaluation seeds never overlap."""
+"""Scenes of two seeds never overlap."""
 MAX_SEED = 10_000
+MAX_TUNING_SEED = (EVALUATION_SEED - TUNING_SEED) // SCENES_PER_SEED
 MAX_STARTS = STARTS_PER_SCENE * SCENES_PER_SEED
+HELD_OUT_SUFFIX = "_held_out"
+SUITES = tuple(RECIPES)
+REPORTED = tuple(name for name, recipe in RECIPES.items() if recipe.in_report)
+"""Suites that every report has; the others take longer or are asked for by name."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +28,15 @@ class Cell:
 
     Attributes:
         name: of the kind of scene.
-        yaw: heading at the start relative to the direction of crossing [deg]: 0 towards the
-            goal, 180 with the back to it.
+        yaw: heading at the start relative to the way ahead [deg]: 0 towards the goal, 180 with the
+            back to it.
         scenarios: the scenes, with start areas (near and far, or one) and a goal area.
         starts: spread evenly over scenes and start areas.
         expectation: "cross": reach the goal; "stop": stay valid to the end of the episode.
+        yaw_spread: headings are uniform in `yaw` +- this, to either side [deg].
+        speed: at the start, along the heading [m/s].
+        aim: "crossing": the way ahead is the scenario's; "goal": from each start to its goal.
+        steps: after which a roll-out is cut, where the suite's are not meant.
     """
 
     name: str
@@ -36,6 +44,15 @@ class Cell:
     scenarios: tuple[Scenario, ...]
     starts: int
     expectation: Expectation = "cross"
+    yaw_spread: float = 0.0
+    speed: float = 0.0
+    aim: Literal["crossing", "goal"] = "crossing"
+    steps: int | None = None
+
+    @property
+    def key(self) -> tuple[str, float, float, float]:
+        """What tells a cell from the others of its suite: name, yaw, spread, speed."""
+        return self.name, self.yaw, self.yaw_spread, self.speed
 
 
 @dataclass(frozen=True)
@@ -43,94 +60,90 @@ class Suite:
     """Cells that are judged together.
 
     Attributes:
-        name: of the suite.
-        seed: which of the evaluation scenes and starts.
+        name: of the suite; "..._held_out" for the terrain to tune on.
+        seed: which of the scenes and starts.
         steps: after which a roll-out is cut: long enough for all who still walk.
         cells: of the suite.
+        start_seed: of the starts' random stream; by default `seed`.
     """
 
     name: str
     seed: int
     steps: int
     cells: tuple[Cell, ...]
+    start_seed: int | None = None
+
+    def stream(self) -> int:
+        """Return the seed that the starts are drawn with."""
+        return self.seed if self.start_seed is None else self.start_seed
+
+    def steps_of(self, cell: Cell) -> int:
+        """Return after how many steps a roll-out of a cell is cut."""
+        return self.steps if cell.steps is None else cell.steps
 
 
-@dataclass(frozen=True)
-class _Recipe:
-    """How to make a suite: its scenes by cell name, headings [deg], usual starts, steps."""
-
-    scenes: dict[str, Callable[[int], Scenario]]
-    yaws: tuple[float, ...]
-    starts: int
-    steps: int
-    expectation: Expectation = "cross"
-
-
-_RECIPES = {
-    # T table 3.3; 600 steps walk 12 m at the desired speed, twice the longest crossing.
-    "transitions": _Recipe(
-        {
-            "rubble": lambda seed: transition("rubble", seed),
-            "bridge": lambda seed: transition("bridge", seed),
-            "stairs_down": lambda seed: transition("stairs_down", seed),
-            "stairs_up": lambda seed: transition("stairs_up", seed),
-        },
-        yaws=(0.0, 180.0),
-        starts=1000,
-        steps=600,
-    ),
-    "hole": _Recipe({"hole": hole}, yaws=(0.0,), starts=200, steps=800),
-    "wall": _Recipe({"wall": wall}, yaws=(0.0,), starts=200, steps=800),
-    "circuit": _Recipe({"circuit": circuit}, yaws=(0.0,), starts=100, steps=3000),
-    # As long as the thesis's episodes: standing at the edge is easy for a moment only.
-    "dead_end": _Recipe(
-        {
-            "void": lambda seed: dead_end("void", seed),
-            "wall": lambda seed: dead_end("wall", seed),
-            "platform": lambda seed: dead_end("platform", seed),
-        },
-        yaws=(0.0, 180.0),
-        starts=200,
-        steps=800,
-        expectation="stop",
-    ),
-}
-
-SUITES = tuple(_RECIPES)
-
-
-def make_suite(name: str, starts: int | None = None, seed: int = 0) -> Suite:
+def make_suite(
+    name: str, starts: int | None = None, seed: int = 0, held_out: bool = False
+) -> Suite:
     """Return a suite: the same one, always, for the same name, starts and seed.
 
     Args:
         name: one of SUITES.
         starts: a cell; by default what the suite usually has.
         seed: shifts scenes and starts within the range of seeds kept for evaluation.
+        held_out: the same suite on other terrain and from other starts: to choose and tune by, so
+            that evaluation terrain stays unseen.
 
     Raises:
         InputError: no suite has that name, or a number is out of range.
     """
-    if name not in _RECIPES:
+    if name not in RECIPES:
         close = difflib.get_close_matches(name, SUITES, n=1, cutoff=0.5)
         hint = f"did you mean {close[0]!r}? There are" if close else "there are"
         raise InputError(f"no suite is called {name!r}; {hint} {', '.join(SUITES)}")
-    recipe = _RECIPES[name]
+    recipe = RECIPES[name]
     starts = recipe.starts if starts is None else starts
-    if not 1 <= starts <= MAX_STARTS:
-        raise InputError(f"starts = {starts}: a cell needs at least 1 and at most {MAX_STARTS}")
-    if not 0 <= seed < MAX_SEED:
-        raise InputError(f"seed = {seed}: evaluation seeds go from 0 to {MAX_SEED - 1}")
-    cells = []
-    for cell_name, make_scene in recipe.scenes.items():
-        scenarios = tuple(make_scene(each) for each in scene_seeds(starts, seed))
-        # All headings on the same scenes: what differs between two cells is the heading alone.
-        cells += [
-            Cell(cell_name, yaw, scenarios, starts, recipe.expectation) for yaw in recipe.yaws
-        ]
-    return Suite(name, seed, recipe.steps, tuple(cells))
+    most = recipe.starts_per_scene * SCENES_PER_SEED
+    if not 1 <= starts <= most:
+        raise InputError(f"starts = {starts}: a cell needs at least 1 and at most {most}")
+    kind, last = ("held-out", MAX_TUNING_SEED) if held_out else ("evaluation", MAX_SEED)
+    if not 0 <= seed < last:
+        raise InputError(f"seed = {seed}: {kind} seeds go from 0 to {last - 1}")
+    seeds = scene_seeds(starts, seed, recipe.starts_per_scene, held_out)
+    cells = _cells(recipe, starts, seeds)
+    # No evaluation seed draws the starts of a held-out suite: some scenes are the same for all.
+    start_seed = MAX_SEED + seed if held_out else seed
+    return Suite(
+        name + HELD_OUT_SUFFIX * held_out, seed, recipe.steps, cells, start_seed=start_seed
+    )
 
 
-def scene_seeds(starts: int, seed: int) -> range:
+def scene_seeds(
+    starts: int, seed: int, starts_per_scene: int = STARTS_PER_SCENE, held_out: bool = False
+) -> range:
     """Return the terrain seeds of a cell with so many starts."""
-    first = EVALUATION_SEED + seed * SCENES_PER_SEED
-    return range(first, first + -(-starts // STARTS_PER_SCENE))
+    first = (TUNING_SEED if held_out else EVALUATION_SEED) + seed * SCENES_PER_SEED
+    return range(first, first + -(-starts // starts_per_scene))
+
+
+def _cells(recipe: Recipe, starts: int, seeds: range) -> tuple[Cell, ...]:
+    # All headings on the same scenes: what differs between two cells is the heading alone.
+    scenarios = {
+        name: tuple(SCENARIOS[name](each) for each in seeds)
+        for name in dict.fromkeys(row.scenario for row in recipe.rows)
+    }
+    return tuple(_cell(row, scenarios[row.scenario], starts, recipe) for row in recipe.rows)
+
+
+def _cell(row: Row, scenarios: tuple[Scenario, ...], starts: int, recipe: Recipe) -> Cell:
+    return Cell(
+        row.name,
+        row.yaw,
+        scenarios,
+        starts,
+        recipe.expectation,
+        row.yaw_spread,
+        row.speed,
+        row.aim,
+        row.steps,
+    )

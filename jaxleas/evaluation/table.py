@@ -16,7 +16,15 @@ THESIS = {
     ("stairs_down", 180.0): 1.00,
     ("stairs_up", 180.0): 0.97,
 }
-METHOD_TITLES = {"leas_p1": "LEAS-P1", "rb_lin": "RB-Lin"}
+METHOD_TITLES = {
+    "rb_lin": "RB-Lin",
+    "rb_kino": "RB-Kino",
+    "rb_kino_rrt": "RB-Kino + RRT",
+    "leas_p1": "LEAS-P1",
+    "leas_p2_sampling": "LEAS-P2 (sampling)",
+    "leas_p2_mip": "LEAS-P2 (MIP)",
+    "leas_p2_sl1m": "LEAS-P2 (SL1M)",
+}
 HEADINGS = (
     "cell",
     "yaw",
@@ -99,17 +107,23 @@ def plain_table(evaluation: Evaluation) -> str:
     starts = evaluation.cells[0].starts if evaluation.cells else 0
     title = f"{evaluation.suite}: {starts} starts a cell, seed {evaluation.seed}; must {wanted}"
     body = rows(evaluation)
-    return "\n".join([title, *_align([HEADINGS, *body], filled_columns(body))])
+    kept = filled_columns(body)
+    lines = [[line[column] for column in kept] for line in (HEADINGS, *body)]
+    return "\n".join([title, *align(lines, ("cell", "method"))])
 
 
-def _align(lines: Sequence[Sequence[str]], kept: Sequence[int]) -> list[str]:
-    widths = {column: max(len(line[column]) for line in lines) for column in kept}
+def align(lines: Sequence[Sequence[str]], left: Sequence[str]) -> list[str]:
+    """Return lines of equal columns, the first of them headings, ruled off.
+
+    Args:
+        lines: the headings, then the rows.
+        left: headings of the columns that are aligned to the left.
+    """
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     texts = [
         "  ".join(
-            line[column].ljust(widths[column])
-            if HEADINGS[column] in ("cell", "method")
-            else line[column].rjust(widths[column])
-            for column in kept
+            text.ljust(width) if heading in left else text.rjust(width)
+            for heading, text, width in zip(lines[0], line, widths, strict=True)
         ).rstrip()
         for line in lines
     ]

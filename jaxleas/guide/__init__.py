@@ -10,6 +10,7 @@ from jaxleas.guide.files import (
 from jaxleas.guide.leas import Leas, leas
 from jaxleas.guide.loading import load_policy
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
+from jaxleas.guide.rb_kino import RbKino, rb_kino
 from jaxleas.guide.rb_lin import RbLin, rb_lin
 from jaxleas.guide.rollout import RollOut, paths, roll_out
 from jaxleas.guide.steering_method import HostSteeringMethod, SteeringMethod
@@ -19,12 +20,14 @@ __all__ = [
     "HostSteeringMethod",
     "Leas",
     "OnnxPolicy",
+    "RbKino",
     "RbLin",
     "RollOut",
     "SteeringMethod",
     "leas",
     "load_policy",
     "paths",
+    "rb_kino",
     "rb_lin",
     "read_guide_paths",
     "read_onnx_policy",

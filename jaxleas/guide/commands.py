@@ -12,10 +12,14 @@ from jaxleas.types import InputError
 if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.files import Reason
+    from jaxleas.guide.onnx_policy import OnnxPolicy
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
     from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.training.policy import SteeringPolicy
     from jaxleas.types import Query
+
+Steering = Literal["leas", "kino", "lin"]
 
 MAX_CONFIGURATIONS = 20_000_000  # of all paths together: about a gigabyte while they are walked
 
@@ -28,7 +32,7 @@ def rollout(
     out: Path,
     steps: int = 800,
     resolution: float | None = None,
-    steering: Literal["leas", "lin"] = "leas",
+    steering: Steering = "leas",
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     scale: float = 1.0,
@@ -45,7 +49,8 @@ def rollout(
         out: the guide paths, .npz.
         steps: most configurations after the first of a path.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        steering: leas = the policy; lin = RB-Lin, which knows no terrain, under its conditions.
+        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, under
+            its conditions.
         picture: draw the paths from above (.png, .svg, .pdf).
         up: of a mesh, the axis that points up.
         scale: of a mesh, metres a unit.
@@ -55,10 +60,8 @@ def rollout(
     """
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
-    from jaxleas.guide.leas import leas
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.picture import draw_guide_paths, require_picture
-    from jaxleas.guide.rb_lin import rb_lin
     from jaxleas.guide.rollout import paths
     from jaxleas.terrain.importers import import_terrain
 
@@ -79,9 +82,7 @@ def rollout(
     require_on_terrain(queries, asked, ground)
     env = SteeringEnv(walker.config)
     config = env.config
-    method = (
-        leas(env, walker) if steering == "leas" else rb_lin(config.limits, config.desired_speed)
-    )
+    method = steering_named(steering, env, walker)
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
@@ -94,6 +95,20 @@ def rollout(
         f" {count['invalid']} ended invalid, {count['stopped']} stopped before it"
         + (f"; drawn in {picture}" if picture is not None else "")
     )
+
+
+def steering_named(
+    steering: Steering, env: "SteeringEnv", policy: "SteeringPolicy | OnnxPolicy"
+) -> "SteeringMethod":
+    """Return the steering method of that name, as fast as the policy was trained to walk."""
+    from jaxleas.guide.leas import leas
+    from jaxleas.guide.rb_kino import rb_kino
+    from jaxleas.guide.rb_lin import rb_lin
+
+    if steering == "leas":
+        return leas(env, policy)
+    baseline = {"kino": rb_kino, "lin": rb_lin}[steering]
+    return baseline(env.config.limits, env.config.desired_speed)
 
 
 def walk_queries(

@@ -8,11 +8,24 @@ from jaxleas.terrain.importers import import_mesh, import_png, import_terrain
 from jaxleas.terrain.links import Link, Tile
 from jaxleas.terrain.mesh_scene import mesh_to_scene
 from jaxleas.terrain.rasterise import rasterise
-from jaxleas.terrain.scenarios import Scenario, circuit, dead_end, hole, transition, wall
+from jaxleas.terrain.scenarios import (
+    SCENARIOS,
+    Scenario,
+    circuit,
+    dead_end,
+    hole,
+    long_course,
+    make_scenario,
+    rotation,
+    scene_with_areas,
+    transition,
+    wall,
+)
 from jaxleas.terrain.scene import Scene, read_scene, write_scene
 from jaxleas.terrain.tiles import TileKind
 
 __all__ = [
+    "SCENARIOS",
     "Arena",
     "GeneratorConfig",
     "HeightMap",
@@ -29,10 +42,14 @@ __all__ = [
     "import_mesh",
     "import_png",
     "import_terrain",
+    "long_course",
+    "make_scenario",
     "mesh_to_scene",
     "rasterise",
     "read_height_map",
     "read_scene",
+    "rotation",
+    "scene_with_areas",
     "transition",
     "wall",
     "write_height_map",

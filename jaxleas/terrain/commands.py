@@ -1,4 +1,4 @@
-"""The functions behind `jaxleas terrain show`, `import` and `generate`."""
+"""The functions behind `jaxleas terrain show`, `import`, `generate` and `scenario`."""
 
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap, write_height_map
 from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.meshes import Up
+from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types.errors import InputError
 
@@ -114,6 +115,26 @@ def generate(*, out: Path, seed: int = 0, rows: int = 5, columns: int = 5) -> Pa
     print(
         f"{rows} x {columns} tiles, {len(arena.scene.surfaces)} surfaces, "
         f"{len(arena.links)} links ({', '.join(kinds) or 'none'})\nwritten to {out}"
+    )
+    return out
+
+
+def scenario(name: str, *, out: Path, seed: int = 0) -> Path:
+    """Write a named scenario as a scene (.json) with its start and goal areas.
+
+    Args:
+        name: e.g. hole, stairs_up or long_course; a wrong name is answered with all of them.
+        out: the scene, .json.
+        seed: of the terrain; evaluation begins at 2000000.
+    """
+    _require_suffix(out, ".json")
+    if seed < 0:
+        raise InputError(f"seed {seed} must not be negative")
+    scene = scene_with_areas(make_scenario(name, seed))
+    write_scene(out, scene)
+    print(
+        f"{name}, seed {seed}: {len(scene.surfaces)} surfaces, {len(scene.obstacles)} obstacle "
+        f"faces, areas {', '.join(scene.areas)}\nwritten to {out}"
     )
     return out
 

@@ -1,8 +1,10 @@
 """Which seeds may draw which terrain: training never sees what it is judged on."""
 
-# Three ranges of seeds that never meet. A training configuration is refused a first seed beyond
-# its range; held-out terrain (checkpoint choice) and evaluation terrain (reported numbers) differ
-# too, so that choosing the best checkpoint cannot leak into the number that is reported for it.
+# Four ranges of seeds that never meet. A training configuration is refused a first seed beyond
+# its range; held-out terrain (checkpoint choice), tuning terrain (named scenarios, judged again and
+# again while a policy is refined) and evaluation terrain (reported numbers) differ too, so that no
+# choice can leak into the number that is reported for it.
 MAX_TRAINING_SEED = 900_000
 HELD_OUT_SEED = 1_000_000
+TUNING_SEED = 1_500_000
 EVALUATION_SEED = 2_000_000

@@ -20,8 +20,8 @@ def test_a_run_folder_is_judged_printed_and_kept(run, tmp_path, capsys):
     evaluation = evaluate(run, starts=2, json=tmp_path / "out.json", seed=3)
     assert read_evaluation(tmp_path / "out.json") == evaluation
     assert read_evaluation(evaluation_file(run, "transitions")) == evaluation
-    assert len(evaluation.cells) == 16
-    assert {cell.method for cell in evaluation.cells} == {"leas_p1", "rb_lin"}
+    assert len(evaluation.cells) == 24
+    assert {cell.method for cell in evaluation.cells} == {"leas_p1", "rb_lin", "rb_kino"}
     assert evaluation.seed == 3
     assert evaluation.robot == "talos"
     shown = capsys.readouterr()
@@ -85,7 +85,7 @@ def test_a_report_of_a_file_is_refused(run):
 
 def test_the_candidate_is_walked_by_its_own_configuration(run):
     candidate = load_candidate(run)
-    assert list(candidate.methods) == ["leas_p1", "rb_lin"]
+    assert list(candidate.methods) == ["leas_p1", "rb_lin", "rb_kino"]
     assert candidate.env.config == candidate.methods["leas_p1"].policy.config  # type: ignore[attr-defined]
 
 

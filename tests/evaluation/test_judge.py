@@ -73,10 +73,16 @@ def test_path_lengths_by_hand():
     position[0, :, 1] = [0.0, 0.0, 4.0, 4.0]
     position[1, :, 2] = [0.0, 1.0, 2.0, 9.0]  # what follows the end does not count
     end = np.array([2, 2])
-    starts = Starts(motion=None, map_index=None, waypoints=np.zeros((2, 1, 3)), area=np.zeros(2))
+    nowhere = np.zeros(2)
+    starts = Starts(None, None, np.zeros((2, 1, 3)), area=nowhere, scene=nowhere)  # type: ignore[arg-type]
     flags = np.ones(2, dtype=bool)
-    walk = Walk(starts, position, position[..., 0], position[..., 0] == 0, end, flags, ~flags)
+    walk = Walk(
+        starts, position, position[..., 0], position, position[..., 0] == 0, end, flags, ~flags
+    )
     length, straight = path_lengths(walk)
     assert length == pytest.approx([7.0, 2.0])
     assert straight == pytest.approx([5.0, 2.0])
     assert walk.path(1).shape == (3, 3)
+    guide = walk.guide_path(0, 0.5)
+    assert guide.time.tolist() == [0.0, 0.5, 1.0]
+    assert guide.length == pytest.approx(7.0)

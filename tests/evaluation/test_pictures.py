@@ -10,7 +10,7 @@ def a_walk(start, reached, invalid) -> Walk:
     position[:, 0, :2] = start
     flags = np.array(reached, dtype=bool), np.array(invalid, dtype=bool)
     end = np.ones(len(start), dtype=int)
-    return Walk(None, position, position[..., 0], position[..., 0] == 0, end, *flags)  # type: ignore[arg-type]
+    return Walk(None, position, position[..., 0], position, position[..., 0] == 0, end, *flags)  # type: ignore[arg-type]
 
 
 def test_examples_show_a_failure_of_each_kind_and_then_spread():

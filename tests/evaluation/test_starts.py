@@ -10,7 +10,7 @@ from tests.evaluation.conftest import flat_scene
 
 
 @pytest.mark.parametrize("name", SUITES)
-def test_starts_are_valid_at_rest_at_walking_height_in_their_area(env, name):
+def test_starts_are_valid_at_walking_height_and_speed_in_their_area(env, name):
     suite = make_suite(name, 24)
     grounds = make_grounds(suite.cells)
     for cell in suite.cells:
@@ -18,9 +18,11 @@ def test_starts_are_valid_at_rest_at_walking_height_in_their_area(env, name):
         motion = starts.motion
         heights = env.local_heights(grounds.atlas, starts.map_index, motion)
         assert np.all(env.condition(heights, motion) >= 0.0)
-        assert not np.any(motion.velocity)
+        speed = np.linalg.norm(motion.velocity, axis=-1)
+        assert speed == pytest.approx(np.full(cell.starts, cell.speed), abs=1e-6)
         for index in range(cell.starts):
-            scenario = cell.scenarios[index // len(cell.scenarios[0].start_areas) % 2]
+            each = len(cell.scenarios[0].start_areas)
+            scenario = cell.scenarios[index // each % len(cell.scenarios)]
             x_min, x_max, y_min, y_max = scenario.start_areas[starts.area[index]]
             x, y, z = np.asarray(motion.position[index], dtype=np.float64)
             assert x_min - 1e-6 <= x <= x_max + 1e-6
@@ -37,6 +39,22 @@ def test_every_heading_is_exactly_the_cells(env):
         wanted = crossing_direction(cell.scenarios[0]) + np.deg2rad(cell.yaw)
         assert np.cos(yaw) == pytest.approx(np.full(10, np.cos(wanted)), abs=1e-6)
         assert np.sin(yaw) == pytest.approx(np.full(10, np.sin(wanted)), abs=1e-6)
+
+
+def test_headings_towards_the_goal_are_spread_to_both_sides_and_speeds_go_along_them(env):
+    suite = make_suite("thesis", 60)
+    cell = next(each for each in suite.cells if each.key == ("rotation", 90.0, 30.0, 0.07))
+    starts = draw_starts(env, make_grounds([cell]), cell, 0)
+    yaw = np.asarray(starts.motion.yaw, dtype=np.float64)
+    way = np.asarray(starts.waypoints[:, 0] - starts.motion.position, dtype=np.float64)
+    aside = np.angle(np.exp(1j * (yaw - np.arctan2(way[:, 1], way[:, 0]))), deg=True)
+    assert np.abs(aside).min() >= 60.0 - 1e-3
+    assert np.abs(aside).max() <= 120.0 + 1e-3
+    assert np.ptp(np.abs(aside)) > 45.0
+    assert 15 < (aside > 0.0).sum() < 45
+    assert np.asarray(starts.motion.velocity) == pytest.approx(
+        0.07 * np.stack([np.cos(yaw), np.sin(yaw), 0.0 * yaw], axis=-1), abs=1e-6
+    )
 
 
 def test_near_and_far_in_equal_parts_over_all_scenes(env):

@@ -4,12 +4,14 @@ import pytest
 from jaxleas.evaluation.suites import (
     MAX_SEED,
     MAX_STARTS,
+    MAX_TUNING_SEED,
+    REPORTED,
     STARTS_PER_SCENE,
     SUITES,
     make_suite,
     scene_seeds,
 )
-from jaxleas.terrain.seeds import EVALUATION_SEED, HELD_OUT_SEED, MAX_TRAINING_SEED
+from jaxleas.terrain.seeds import EVALUATION_SEED, HELD_OUT_SEED, MAX_TRAINING_SEED, TUNING_SEED
 from jaxleas.types import InputError
 
 
@@ -39,6 +41,43 @@ def test_no_seed_is_ever_trained_or_held_out_on():
         seeds = scene_seeds(MAX_STARTS, seed)
         assert min(seeds) >= EVALUATION_SEED > HELD_OUT_SEED > MAX_TRAINING_SEED
     assert not set(scene_seeds(MAX_STARTS, 0)) & set(scene_seeds(MAX_STARTS, 1))
+
+
+def test_what_is_tuned_on_is_neither_evaluated_nor_trained_on():
+    for seed in (0, MAX_TUNING_SEED - 1):
+        seeds = scene_seeds(MAX_STARTS, seed, held_out=True)
+        assert max(seeds) < EVALUATION_SEED
+        assert min(seeds) >= TUNING_SEED > HELD_OUT_SEED > MAX_TRAINING_SEED
+    ours, theirs = make_suite("thesis", 20, held_out=True), make_suite("thesis", 20)
+    assert ours.name == "thesis_held_out"
+    assert [cell.key for cell in ours.cells] == [cell.key for cell in theirs.cells]
+    assert ours.stream() not in range(MAX_SEED)  # flat ground is the same, its starts are not
+    for mine, other in zip(ours.cells, theirs.cells, strict=True):
+        if mine.name != "rotation":
+            scenes = [{v.tobytes() for v in each.scene.polygons} for each in mine.scenarios]
+            assert all(
+                {v.tobytes() for v in each.scene.polygons} not in scenes for each in other.scenarios
+            )
+    with pytest.raises(InputError, match=f"held-out seeds go from 0 to {MAX_TUNING_SEED - 1}"):
+        make_suite("thesis", 20, MAX_TUNING_SEED, held_out=True)
+
+
+def test_the_thesis_suite_has_its_tables():
+    suite = make_suite("thesis", 20)
+    keys = [cell.key for cell in suite.cells]
+    assert len(set(keys)) == len(keys)
+    rotation = [key[1:] for key in keys if key[0] == "rotation"]  # T table 4.1
+    assert {(low - spread, low + spread) for low, spread, _ in rotation} == {
+        (0.0, 30.0),
+        (60.0, 120.0),
+        (150.0, 180.0),
+    }
+    assert len(rotation) == 9
+    for name in ("hole_rim", "bridge_ahead", "wall", "rubble", "stairs_up"):  # tables 4.2, 4.3
+        assert (name, 0.0, 0.0, 0.04) in keys
+    long = next(cell for cell in suite.cells if cell.name == "long_course")
+    assert suite.steps_of(long) > suite.steps == suite.steps_of(suite.cells[0])
+    assert "thesis" not in REPORTED
 
 
 def test_transitions_are_the_thesis_table():

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from jaxleas.terrain import HeightMap, read_height_map, read_scene, write_height_map
-from jaxleas.terrain.commands import convert, generate, show
+from jaxleas.terrain.commands import convert, generate, scenario, show
 from jaxleas.types import InputError
 
 
@@ -49,3 +49,14 @@ def test_generate_refuses_what_makes_no_arena(tmp_path, arguments, problem):
 def test_import_writes_npz_only(tmp_path):
     with pytest.raises(InputError, match=r"must end in \.npz"):
         convert(tmp_path / "mesh.stl", out=tmp_path / "map.png")
+
+
+def test_a_named_scenario_is_written_with_its_areas(tmp_path, capsys):
+    written = scenario("hole", out=tmp_path / "hole.json", seed=2)
+    assert set(read_scene(written).areas) == {"start", "goal"}
+    assert "4 surfaces" in capsys.readouterr().out
+    with pytest.raises(InputError, match="there are rubble"):
+        scenario("qqq", out=tmp_path / "moon.json")
+    with pytest.raises(InputError, match="must not be negative"):
+        scenario("hole", out=tmp_path / "moon.json", seed=-1)
+    assert not (tmp_path / "moon.json").exists()

@@ -1,0 +1,160 @@
+"""A side-by-side comparison, written cell by cell, so that it goes on where it was interrupted."""
+
+import time
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from jaxleas.evaluation.contenders import Contenders
+from jaxleas.evaluation.exact import ResultKey, judge_exact, result_key
+from jaxleas.evaluation.examination import Candidate, kept_evaluation
+from jaxleas.evaluation.forecast import Forecast
+from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
+from jaxleas.evaluation.starts import Grounds
+from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.labels import Here, Judge, PlannerSettings, ProcessWorkers
+
+Results = dict[ResultKey, CellResult]
+
+
+def compare(
+    candidate: Candidate,
+    contenders: Contenders,
+    suite: Suite,
+    planners: tuple[str, ...],
+    *,
+    settings: Mapping[str, PlannerSettings] | None = None,
+    processes: int = 1,
+    file: Path | None = None,
+    say: Callable[[str], None] = lambda text: None,
+    grounds: Grounds | None = None,
+) -> Evaluation:
+    """Judge methods side by side on a suite by exact planners.
+
+    Args:
+        candidate: the policy judged; its environment draws the starts.
+        contenders: who walks.
+        suite: to be walked.
+        planners: names of the exact planners; none: the walks alone are counted.
+        settings: of the planners, by name; their defaults where not given.
+        processes: that plan at the same time.
+        file: written after every cell. What it holds already of the same policies, suite, starts,
+            seed and planner settings is kept, and not judged again.
+        say: shows progress.
+        grounds: that hold the suite's scenes, if made already.
+
+    Returns:
+        All results, those of the file included.
+    """
+    workers = Here() if processes == 1 else ProcessWorkers(processes)
+    with ExitStack() as stack:
+        stack.callback(workers.close)
+        chosen = {} if settings is None else settings
+        judges = {name: Judge(name, chosen.get(name), workers=workers) for name in planners}
+        head = _head(candidate, contenders, suite, judges)
+        before = None if file is None else kept_evaluation(file, candidate)
+        sheet = _Sheet(head, suite, file, before)
+        asked: tuple[str | None, ...] = planners or (None,)
+        forecast = Forecast(suite, len(contenders.walkers), asked, say)
+        for key in sheet.results:
+            if key[4] in contenders.walkers and key[5] in asked:
+                forecast.skip(sheet.cells[key[:4]], key[5])
+
+        def keep(result: CellResult) -> None:
+            sheet.add(result)
+            forecast.result(sheet.cells[result_key(result)[:4]], result.planner)
+
+        judge_exact(
+            candidate.env,
+            contenders.walkers,
+            suite,
+            judges,
+            known=dict(sheet.results),
+            on_result=keep,
+            on_guides=forecast.guides,
+            grounds=grounds,
+        )
+        return sheet.evaluation()
+
+
+class _Sheet:
+    """The results so far, and the file that holds them."""
+
+    def __init__(
+        self, head: Evaluation, suite: Suite, file: Path | None, before: Evaluation | None
+    ) -> None:
+        self.begin, self.file = time.perf_counter(), file
+        self.cells: dict[tuple[str, float, float, float], Cell] = {
+            cell.key: cell for cell in suite.cells
+        }
+        self.head, self.results = (
+            (head, {}) if before is None else _merged(before, head, self.cells)
+        )
+        self.earlier = (before.seconds or 0.0) if before is not None and self.results else 0.0
+
+    def add(self, result: CellResult) -> None:
+        """Take a result in; the file holds it from now on."""
+        self.results[result_key(result)] = result
+        if self.file is not None:
+            write_evaluation(self.file, self.evaluation())
+
+    def evaluation(self) -> Evaluation:
+        """Return all results, in the order of the suite's cells."""
+        seconds = round(self.earlier + time.perf_counter() - self.begin, 2)
+        ordered = tuple(
+            result for cell in self.cells for key, result in self.results.items() if key[:4] == cell
+        )
+        changes = {"cells": ordered, "seconds": seconds, "created": now()}
+        return self.head.model_copy(update=changes)
+
+
+def side_by_side_file(run: Path, suite: Suite) -> Path:
+    """Return where a run folder keeps a comparison: one file a suite, number of starts and seed."""
+    starts = suite.cells[0].starts
+    return run / "evaluation" / f"side_by_side_{suite.name}_{starts}_seed{suite.seed}.json"
+
+
+def _head(
+    candidate: Candidate, contenders: Contenders, suite: Suite, judges: Mapping[str, Judge]
+) -> Evaluation:
+    """Return an evaluation without results: what they will be of."""
+    return Evaluation(
+        suite=suite.name,
+        policy=str(candidate.path),
+        fingerprint=candidate.fingerprint,
+        policies=dict(contenders.fingerprints),
+        planners={name: judge.settings.model_dump(mode="json") for name, judge in judges.items()},
+        robot=candidate.env.config.robot,
+        seed=suite.seed,
+        created=now(),
+        cells=(),
+    )
+
+
+def _merged(
+    before: Evaluation, head: Evaluation, cells: Mapping[tuple[str, float, float, float], Cell]
+) -> tuple[Evaluation, Results]:
+    """Return the results of a file that a new judgement would only repeat, and a head for both.
+
+    What the file knows of policies and planners that are not asked for now stays in it.
+    """
+    if (before.suite, before.seed, before.robot) != (head.suite, head.seed, head.robot):
+        return head, {}
+    results: Results = {}
+    for result in before.cells:
+        key = result_key(result)
+        changed = _differ(before.policies, head.policies, result.method) or (
+            result.planner is not None and _differ(before.planners, head.planners, result.planner)
+        )
+        if key[:4] in cells and cells[key[:4]].starts == result.starts and not changed:
+            results[key] = result
+    both = {
+        "policies": before.policies | head.policies,
+        "planners": before.planners | head.planners,
+    }
+    return head.model_copy(update=both), results
+
+
+def _differ(before: Mapping[str, Any], now: Mapping[str, Any], name: str) -> bool:
+    return name in now and before.get(name) != now[name]

@@ -1,0 +1,92 @@
+"""Who walks in a side-by-side comparison: the baselines, the policy judged, further policies."""
+
+import difflib
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import Walker, walker
+from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
+from jaxleas.guide.leas import leas
+from jaxleas.guide.loading import load_policy, policy_file
+from jaxleas.types.errors import InputError
+
+
+@dataclass(frozen=True)
+class Contenders:
+    """The methods of a comparison.
+
+    Attributes:
+        walkers: by the name that results carry, baselines first.
+        fingerprints: SHA-256 of the further policies' files, by name.
+    """
+
+    walkers: Mapping[str, Walker]
+    fingerprints: Mapping[str, str]
+
+
+def make_contenders(
+    candidate: Candidate,
+    policies: Mapping[str, Path] | None = None,
+    wanted: Sequence[str] | None = None,
+) -> Contenders:
+    """Return the methods of a comparison.
+
+    Args:
+        candidate: the policy judged, with its baselines.
+        policies: further ones, by the name that results will carry.
+        wanted: names of those that shall walk; all by default.
+
+    Raises:
+        InputError: a name is unknown or taken, or a policy cannot be used.
+    """
+    policies = {} if policies is None else policies
+    names = [*BASELINES, POLICY, *policies]
+    for name in policies:
+        if names.count(name) > 1:
+            raise InputError(f"the method {name!r} is there already; give the policy another name")
+    for name in wanted or ():
+        if name not in names:
+            close = difflib.get_close_matches(name, names, n=1)
+            hint = f"did you mean {close[0]!r}? There are" if close else "there are"
+            raise InputError(f"no method is called {name!r}; {hint} {', '.join(names)}")
+    chosen = [name for name in names if wanted is None or name in wanted]
+    walkers, fingerprints = {}, {}
+    for name in chosen:
+        if name in policies:
+            walkers[name] = _policy_walker(policies[name])
+            fingerprints[name] = fingerprint_of(policies[name])
+        else:
+            walkers[name] = walker(candidate.env, candidate.methods[name])
+    return Contenders(walkers, fingerprints)
+
+
+def parse_policies(given: Sequence[str]) -> dict[str, Path]:
+    """Return the policies of `name=path` texts.
+
+    Raises:
+        InputError: one is not of that form, or a name is given twice.
+    """
+    policies: dict[str, Path] = {}
+    for text in given:
+        name, found, path = text.partition("=")
+        if not (name.isidentifier() and found and path):
+            raise InputError(f"{text!r} is no policy: write name=path, e.g. leas_p2_mip=runs/p2")
+        if name in policies:
+            raise InputError(f"two policies are called {name!r}: give each its own name")
+        policies[name] = Path(path)
+    return policies
+
+
+def fingerprint_of(path: Path) -> str:
+    """Return the SHA-256 of a policy's file."""
+    file = policy_file(path) if path.is_dir() else path
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _policy_walker(path: Path) -> Walker:
+    policy = load_policy(path)
+    env = SteeringEnv(policy.config)
+    return walker(env, leas(env, policy))

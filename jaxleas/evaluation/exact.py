@@ -1,0 +1,184 @@
+"""Guide paths judged by exact contact planners: the numbers that count (T 4.3, 5.2.4)."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Bool
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.judge import Walk, rounded, summarise, walk
+from jaxleas.evaluation.result_file import CellResult
+from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
+from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.labels import Verdict
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath
+
+Walker = Callable[[Grounds, Starts, int], Walk]
+"""Walks the starts of a cell for at most so many steps: any method, with a roadmap or without."""
+ResultKey = tuple[str, float, float, float, str, str | None]
+"""Name, yaw, spread and speed of the cell, method, planner."""
+
+
+class Planner(Protocol):
+    """An exact planner that judges guide paths; `labels.Judge` is one."""
+
+    def judge(
+        self,
+        scenes: Sequence[Scene],
+        paths: Sequence[GuidePath],
+        scene_index: Sequence[int],
+        on_done: Callable[[int], None] = ...,
+    ) -> list[Verdict]:
+        """Return the verdict on each path over its scene."""
+        ...
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The roll-outs of a cell, and what an exact planner said of them.
+
+    Attributes:
+        walk: the roll-outs.
+        verdicts: one each; None where the goal was not reached: there is no guide to plan along.
+    """
+
+    walk: Walk
+    verdicts: tuple[Verdict | None, ...]
+
+    @property
+    def planned(self) -> Bool[np.ndarray, " N"]:
+        """The goal was reached, and the planner made contacts for the whole guide path."""
+        return np.array([each is not None and each.success for each in self.verdicts], dtype=bool)
+
+
+def walker(env: SteeringEnv, method: SteeringMethod) -> Walker:
+    """Return a steering method that observes through its own environment as a walker."""
+    return lambda grounds, starts, steps: walk(env, grounds, method, starts, steps)
+
+
+def ask(
+    cell: Cell,
+    walked: Walk,
+    planner: Planner,
+    time_step: float,
+    on_done: Callable[[int], None] = lambda count: None,
+) -> Judged:
+    """Ask an exact planner about every guide path that reached its goal.
+
+    Args:
+        cell: that was walked.
+        walked: its roll-outs.
+        planner: that judges.
+        time_step: between two configurations [s].
+        on_done: told a number of guide paths whenever so many more are judged.
+    """
+    numbers = np.flatnonzero(walked.reached).tolist()
+    verdicts: list[Verdict | None] = [None] * len(walked.reached)
+    if numbers:
+        answers = planner.judge(
+            [scenario.scene for scenario in cell.scenarios],
+            [walked.guide_path(number, time_step) for number in numbers],
+            [int(walked.starts.scene[number]) for number in numbers],
+            on_done,
+        )
+        for number, answer in zip(numbers, answers, strict=True):
+            verdicts[number] = answer
+    return Judged(walked, tuple(verdicts))
+
+
+def summarise_plans(
+    cell: Cell, method: str, planner: str, judged: Judged, time_step: float
+) -> CellResult:
+    """Count a cell's plans: `planned` is their share of all starts, not of those that arrived.
+
+    Args:
+        cell: that was walked.
+        method: its name.
+        planner: its name.
+        judged: by the planner.
+        time_step: between two configurations [s].
+    """
+    result = summarise(cell, method, judged.walk, time_step)
+    good = [each for each in judged.verdicts if each is not None and each.success]
+    late = [each for each in judged.verdicts if each is not None and not each.decided]
+    robustness = [each.mean_robustness for each in good if each.mean_robustness is not None]
+    steps = [each.mean_step for each in good if each.mean_step is not None]
+    plans = {
+        "planner": planner,
+        "planned": rounded(len(good) / cell.starts),
+        "undecided": rounded(len(late) / cell.starts),
+        "robustness": rounded(np.mean(robustness)) if robustness else None,
+        "mean_step": rounded(np.mean(steps)) if steps else None,
+    }
+    if cell.expectation == "cross":
+        low, high = wilson_interval(len(good), cell.starts)
+        plans |= {"low": rounded(low), "high": rounded(high)}
+    return CellResult.model_validate(result.model_dump() | plans)
+
+
+def judge_exact(
+    env: SteeringEnv,
+    walkers: Mapping[str, Walker],
+    suite: Suite,
+    planners: Mapping[str, Planner],
+    *,
+    known: Mapping[ResultKey, CellResult] | None = None,
+    on_result: Callable[[CellResult], None] = lambda result: None,
+    on_guides: Callable[[Cell, str, str | None, int], None] = lambda *_: None,
+    grounds: Grounds | None = None,
+) -> list[CellResult]:
+    """Walk a suite with every method and let every exact planner judge the same guide paths.
+
+    Args:
+        env: the task: draws the starts (the same for all), says how long a time step is.
+        walkers: by the name that results carry; `walker` makes one of a steering method.
+        suite: to be walked.
+        planners: by name; none: the walks alone are counted.
+        known: results that are there already; what they say is not asked again.
+        on_result: told each new result as soon as it is there.
+        on_guides: told cell, method, planner and a number of guide paths judged just now.
+        grounds: that hold the suite's scenes, if made already.
+
+    Returns:
+        One result a cell, method and planner, in that order.
+    """
+    known = {} if known is None else known
+    grounds = make_grounds(suite.cells) if grounds is None else grounds
+    time_step = env.config.limits.time_step
+    results = []
+    for cell in suite.cells:
+        starts = None
+        for method, walks in walkers.items():
+            walked = None
+            for planner in planners or (None,):
+                result = known.get((*cell.key, method, planner))
+                if result is None:
+                    starts = starts or draw_starts(env, grounds, cell, suite.stream())
+                    on_guides(cell, method, planner, 0)
+                    walked = walked or walks(grounds, starts, suite.steps_of(cell))
+                    if planner is None:
+                        result = summarise(cell, method, walked, time_step)
+                    else:
+                        told = _counter(on_guides, cell, method, planner)
+                        judged = ask(cell, walked, planners[planner], time_step, told)
+                        result = summarise_plans(cell, method, planner, judged, time_step)
+                    on_result(result)
+                results.append(result)
+    return results
+
+
+def result_key(result: CellResult) -> ResultKey:
+    """Return what tells a result from the others of its evaluation."""
+    cell = (result.name, result.yaw, result.yaw_spread, result.speed)
+    return (*cell, result.method, result.planner)
+
+
+def _counter(
+    on_guides: Callable[[Cell, str, str | None, int], None], cell: Cell, method: str, planner: str
+) -> Callable[[int], None]:
+    return lambda count: on_guides(cell, method, planner, count)

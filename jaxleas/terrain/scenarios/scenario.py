@@ -1,0 +1,98 @@
+"""A terrain with a task, and the parts that named terrains are built of."""
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.links import Area
+from jaxleas.terrain.polygons import box_faces
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.tiles import TileFrame, TilePolygons
+
+CONFIG = GeneratorConfig()
+SIZE, INSET = CONFIG.tile_size, CONFIG.inset
+NEAR, FAR, HALF_WIDTH = (0.25, 0.9), (0.9, 1.75), 0.7
+"""Starts before the first edge of what comes, and to either side of the middle [m]."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A terrain with a task.
+
+    Attributes:
+        name: e.g. "bridge".
+        scene: its polygons.
+        start_areas: rectangles (x_min, x_max, y_min, y_max) [m]: near and far, or one alone.
+        goal_area: rectangle [m].
+        waypoints: to be reached in order (x, y) [m]; of courses and circuits only.
+        crossing: whether the goal can be reached; if not, the robot must stop and stay valid.
+    """
+
+    name: str
+    scene: Scene
+    start_areas: tuple[Area, ...]
+    goal_area: Area
+    waypoints: tuple[tuple[float, float], ...] = ()
+    crossing: bool = True
+
+
+def random_stream(name: str, seed: int) -> np.random.Generator:
+    """Return the random numbers of a scenario: its own, whatever else is drawn."""
+    return np.random.default_rng([zlib.crc32(name.encode()), seed])
+
+
+def tile_frame(column: int, row: int = 0, direction: tuple[float, float] = (1.0, 0.0)) -> TileFrame:
+    """Return the frame of a tile in a grid whose row 0 lies along the x axis."""
+    centre = ((column + 0.5) * SIZE, row * SIZE)
+    entry = (centre[0] - 0.5 * SIZE * direction[0], centre[1] - 0.5 * SIZE * direction[1])
+    return TileFrame(entry, direction, SIZE, INSET)
+
+
+def floor(area: Area, height: float = 0.0) -> TilePolygons:
+    """Return one horizontal rectangle."""
+    return TilePolygons([np.column_stack([_corners(area, INSET), np.full(4, height)])])
+
+
+def box(area: Area, bottom: float, top: float) -> TilePolygons:
+    """Return an upright obstacle."""
+    return TilePolygons(boxes=[box_faces(_corners(area, 0.0), bottom, top)])
+
+
+def platform(area: Area, height: float) -> TilePolygons:
+    """Return a floor one could stand on, with the side faces that keep one from getting there."""
+    sides = box_faces(_corners(area, INSET), 0.0, height)
+    return TilePolygons([sides.pop("top")], [sides])
+
+
+def compose(parts: Sequence[TilePolygons]) -> Scene:
+    """Return the scene of all parts, surfaces and boxes numbered in their order."""
+    surfaces = [vertices for part in parts for vertices in part.surfaces]
+    boxes = [faces for part in parts for faces in part.boxes]
+    return Scene(
+        {f"surface_{index}": vertices for index, vertices in enumerate(surfaces)},
+        {
+            f"obstacle_{index}_{face}": vertices
+            for index, faces in enumerate(boxes)
+            for face, vertices in faces.items()
+        },
+    )
+
+
+def near_and_far(edge: float, nearest: float = NEAR[0]) -> tuple[Area, Area]:
+    """Return the two start areas before an edge at x = `edge` [m]."""
+    near = (edge - NEAR[1], edge - nearest, -HALF_WIDTH, HALF_WIDTH)
+    return near, (edge - FAR[1], edge - FAR[0], -HALF_WIDTH, HALF_WIDTH)
+
+
+def around(x: float, y: float, half: float) -> Area:
+    """Return the square of edge 2 x `half` around a point [m]."""
+    return x - half, x + half, y - half, y + half
+
+
+def _corners(area: Area, inset: float) -> np.ndarray:
+    x_min, x_max, y_min, y_max = area
+    x_min, x_max, y_min, y_max = x_min + inset, x_max - inset, y_min + inset, y_max - inset
+    return np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]])
