@@ -36,6 +36,12 @@ COMMANDS = {
     "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
     "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
     "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
+    "fit": ("jaxleas.surrogates.commands", "fit", "fit a surrogate of a planner to its labels"),
+    "distill": (
+        "jaxleas.distillation.commands",
+        "distill",
+        "train a policy that knows its planner",
+    ),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 

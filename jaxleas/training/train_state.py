@@ -90,16 +90,23 @@ def make_optimiser(config: PpoConfig) -> optax.GradientTransformation:
     )
 
 
+def fresh_networks(
+    networks: PPONetworks, policy_key: Key[Array, ""], value_key: Key[Array, ""]
+) -> Any:
+    """Return untrained parameters of actor and critic."""
+    return PPONetworkParams(
+        policy=networks.policy_network.init(policy_key),
+        value=networks.value_network.init(value_key),
+    )
+
+
 def initial_state(
     config: RunConfig, env: SteeringEnv, world: World, networks: PPONetworks
 ) -> TrainState:
     """Return the state before the first update, from the run's seed alone."""
     key = jax.random.key(config.seed)
     key, policy_key, value_key, pool_key, take_key, stagger_key = jax.random.split(key, 6)
-    params = PPONetworkParams(
-        policy=networks.policy_network.init(policy_key),
-        value=networks.value_network.init(value_key),
-    )
+    params = fresh_networks(networks, policy_key, value_key)
     count = config.ppo.environments
     pool = draw_starts(env, world, pool_key, max(count, config.ppo.candidates))
     episode, observation = take(pool, take_key, count)

@@ -51,7 +51,7 @@ def test_an_episode_ends_where_foresight_fails_though_the_configuration_is_valid
 def test_a_fresh_start_brings_a_fresh_memory(world):
     env = make()
     pool = draw_starts(env, world, jax.random.key(0), 64)
-    state, observation = take(pool, jax.random.key(1), 8)
+    state, _observation = take(pool, jax.random.key(1), 8)
     weights = RewardParams.of(env.config.reward)
     state, outcome = env.step(world.atlas, weights, state, jnp.zeros((8, 4)))
     done = jnp.arange(8) % 2 == 0

@@ -1,0 +1,1 @@
+"""Distillation: a policy and a surrogate, refined in turn against an exact contact planner."""

@@ -1,0 +1,119 @@
+"""Walk a policy over training terrain: guide paths to ask a planner about."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Bool, Float, Int, Key
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.reward import RewardParams
+from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.world import World
+from jaxleas.training.policy import SteeringPolicy
+from jaxleas.types import GuidePath, RootMotion
+
+HOLD = 10  # steps for which a disturbance lasts: one of a step's length would average out
+
+
+@dataclass(frozen=True)
+class Walks:
+    """N recorded walks of T steps.
+
+    Attributes:
+        motion: of the roots, [N, T+1].
+        valid: every configuration up to this one satisfies R* and C.
+        map_index: terrain of each.
+    """
+
+    motion: RootMotion
+    valid: Bool[np.ndarray, "N T+1"]
+    map_index: Int[np.ndarray, " N"]
+
+    def __len__(self) -> int:
+        """Return the number of walks."""
+        return len(self.map_index)
+
+    def __getitem__(self, rows: Int[np.ndarray, " M"]) -> "Walks":
+        """Return some of the walks."""
+        motion = jax.tree.map(lambda leaf: leaf[rows], self.motion)
+        return Walks(motion, self.valid[rows], self.map_index[rows])
+
+    def paths(self, time_step: float) -> list[GuidePath]:
+        """Return each walk as a guide path, cut before its first invalid configuration."""
+        lengths = self.valid.sum(axis=1)
+        return [
+            GuidePath(
+                time=np.arange(length) * time_step,
+                position=self.motion.position[robot, :length],  # type: ignore[arg-type]
+                yaw=self.motion.yaw[robot, :length],  # type: ignore[arg-type]
+                velocity=self.motion.velocity[robot, :length],  # type: ignore[arg-type]
+                valid=np.ones(length, dtype=bool),
+            )
+            for robot, length in enumerate(lengths)
+        ]
+
+
+def collect(
+    env: SteeringEnv,
+    world: World,
+    policy: SteeringPolicy,
+    key: Key[Array, ""],
+    count: int,
+    steps: int,
+    disturbance: Float[np.ndarray, " kinds"],
+) -> Walks:
+    """Walk `count` robots for `steps` steps, some of them disturbed.
+
+    A planner's limits show where the policy does not go of itself, so disturbances of several
+    strengths are added to its actions, each held for a while: one kind a robot, in turn.
+
+    Args:
+        env: the task; its condition ends a walk.
+        world: terrains and links.
+        policy: that walks.
+        key: consumed here.
+        count: of walks.
+        steps: of each.
+        disturbance: standard deviations, in units of the action's range; 0 leaves a walk alone.
+    """
+    scale = jnp.asarray(disturbance, jnp.float32)[jnp.arange(count) % len(disturbance)]
+    motion, valid, map_index = _walk(env, steps, world, policy, key, scale)
+    host = jax.tree.map(np.asarray, motion)
+    return Walks(host, np.asarray(valid), np.asarray(map_index))
+
+
+@partial(jax.jit, static_argnums=(0, 1))
+def _walk(
+    env: SteeringEnv,
+    steps: int,
+    world: World,
+    policy: SteeringPolicy,
+    key: Array,
+    scale: Float[Array, " N"],
+) -> tuple[RootMotion, Array, Array]:
+    pool_key, take_key, noise_key = jax.random.split(key, 3)
+    count = len(scale)
+    episode, observation = take(draw_starts(env, world, pool_key, 2 * count), take_key, count)
+    weights = RewardParams.of(env.config.reward)
+    shape = (-(-steps // HOLD), count, env.action_size)
+    noise = jnp.repeat(jax.random.normal(noise_key, shape), HOLD, axis=0)[:steps]
+
+    def advance(carry, push):
+        episode, observation, valid = carry
+        action = jnp.clip(policy.action(observation) + scale[:, None] * push, -1.0, 1.0)
+        episode, outcome = env.step(world.atlas, weights, episode, action)
+        valid &= ~outcome.terminated
+        return (episode, outcome.observation, valid), (episode.motion, valid)
+
+    everyone = jnp.ones(count, dtype=bool)
+    _, record = jax.lax.scan(advance, (episode, observation, everyone), noise)
+    whole = jax.tree.map(
+        lambda first, later: jnp.swapaxes(jnp.concatenate([first[None], later]), 0, 1),
+        (episode.motion, everyone),
+        record,
+    )
+    return *whole, episode.plan.map_index

@@ -1,0 +1,60 @@
+"""The function behind `jaxleas distill`."""
+
+from pathlib import Path
+
+from jaxleas.types.errors import InputError
+
+
+def distill(
+    config: Path,
+    *,
+    out: Path,
+    start: Path | None = None,
+    processes: int | None = None,
+) -> None:
+    """Refine a policy and a surrogate in turn, judged by the exact contact planner.
+
+    Args:
+        config: of the distillation, YAML.
+        out: folder to work in; the same command goes on where it was interrupted.
+        start: run folder of the policy to begin with; by default one is trained first.
+        processes: that ask the planner; all cores by default.
+    """
+    import os
+
+    from jaxleas.distillation.config import DistillationConfig
+    from jaxleas.distillation.distill import Distillation
+    from jaxleas.distillation.folder import DistillationFolder
+    from jaxleas.distillation.opening import open_folder, train_start
+    from jaxleas.distillation.table import table_of
+    from jaxleas.training.compilation import keep_compiled_programs
+    from jaxleas.training.configuration import load_config
+
+    if processes is not None and processes < 1:
+        raise InputError(f"--processes is {processes}; give 1 or more")
+    keep_compiled_programs()
+    folder = DistillationFolder(Path(out))
+    settled = open_folder(folder, load_config(DistillationConfig, config), start)
+    run = train_start(folder, settled)
+    distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
+    results = distillation.run(_Teller())
+    print(table_of(results))
+    print(f"{folder.policy}: the best round's policy; {folder.surrogate}: its surrogate")
+
+
+class _Teller:
+    """Tells a stage once, and how far it is every few seconds."""
+
+    PAUSE = 5.0  # [s]
+
+    def __init__(self) -> None:
+        self.last = float("-inf")
+
+    def __call__(self, words: str) -> None:
+        from time import monotonic
+
+        counts = " of " in words or "epoch" in words or "judges" in words
+        if counts and monotonic() - self.last < self.PAUSE:
+            return
+        self.last = monotonic()
+        print(words, flush=True)

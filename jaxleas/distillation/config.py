@@ -1,0 +1,69 @@
+"""What a distillation is told: which planner, how many rounds, and what is done in each."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, JsonValue
+
+from jaxleas.surrogates.fit import FitSettings
+from jaxleas.training.config import RunConfig
+from jaxleas.types.strict import Strict
+
+Count = Annotated[int, Field(ge=1)]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+
+
+class CollectConfig(Strict):
+    """Which guide paths the exact planner is asked about."""
+
+    guides: Count = 12_000
+    """In the first round, when nothing is known."""
+    later_guides: Count = 8_000
+    """In each round after it."""
+    steps: Count = 150
+    """Of a guide path: turning and setting foot on a transition happen in the first hundred."""
+    disturbances: tuple[NonNegative, ...] = (0.0, 0.15, 0.3, 0.6)
+    """Standard deviations of what is added to the policy's actions, in units of their range; one
+    guide path in so many each. The planner's limits show where the policy does not go of itself."""
+    candidates: Count = 3
+    """From the second round on, so many times as many guide paths are walked as are judged; half of
+    those judged are the ones whose verdict the surrogate is least sure of."""
+
+
+class PracticeConfig(Strict):
+    """How the policy goes on learning, with the surrogate ending its episodes."""
+
+    steps: Count = 2_000_000
+    """Environment steps a round."""
+    learning_rate: Positive = 2e-4
+    final_learning_rate: NonNegative = 1e-5
+    threshold: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    """The risk dial: 0 ends as many episodes as the planner would, more makes policies careful."""
+
+
+class JudgeConfig(Strict):
+    """How a round's policy is judged by the exact planner, on held-out terrain."""
+
+    suites: tuple[str, ...] = ("transitions", "hole", "wall")
+    starts: Count = 100
+    """A cell."""
+
+
+class DistillationConfig(Strict):
+    """One distillation: a policy and a surrogate, refined in turn against one exact planner."""
+
+    planner: Literal["sampling", "mip", "sl1m"] = "sampling"
+    parameters: dict[str, JsonValue] = Field(default_factory=dict)
+    """Of the planner; what is not named has the planner's own default."""
+    rounds: Count = 4
+    """At most; it ends earlier when the exact success stops rising."""
+    patience: Count = 2
+    """Rounds without a rise after which it ends."""
+    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
+    """Of the guide paths and the fits."""
+    run: RunConfig = RunConfig()
+    """Of the policy to begin with, where none is given, and the base of every round's practice."""
+    collect: CollectConfig = CollectConfig()
+    fit: FitSettings = FitSettings()
+    practice: PracticeConfig = PracticeConfig()
+    judge: JudgeConfig = JudgeConfig()

@@ -1,0 +1,92 @@
+"""A distillation's folder: what each round leaves behind, and so how far it has come.
+
+config.yaml             the resolved configuration
+start/                  run folder of the policy to begin with, where none was given
+round_<k>/labels/       scenes, guide paths and verdicts
+round_<k>/surrogate.npz fitted to the verdicts of all rounds so far
+round_<k>/run/          run folder of the policy's practice
+round_<k>/judged.json   the exact planner's verdicts on its policy; round_0 is the one begun with
+rounds.json             the table of all rounds
+policy.npz, surrogate.npz   of the best round
+
+Every file is whole or absent, and each stage is done when its last file is there: a distillation
+that was killed at any moment goes on from the stage it was in.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+CONFIG = "config.yaml"
+
+
+@dataclass(frozen=True)
+class RoundFolder:
+    """One round's part of the folder."""
+
+    path: Path
+
+    @property
+    def labels(self) -> Path:
+        """Folder of scenes, guide paths and verdicts."""
+        return self.path / "labels"
+
+    @property
+    def labelled(self) -> Path:
+        """Written when every guide path has its verdict: how long it took."""
+        return self.labels / "done.json"
+
+    @property
+    def surrogate(self) -> Path:
+        """The surrogate."""
+        return self.path / "surrogate.npz"
+
+    @property
+    def run(self) -> Path:
+        """Run folder of the practice."""
+        return self.path / "run"
+
+    @property
+    def practised(self) -> Path:
+        """Written when the practice is over: how long it took."""
+        return self.path / "practised.json"
+
+    @property
+    def judged(self) -> Path:
+        """The exact planner's verdicts."""
+        return self.path / "judged.json"
+
+
+@dataclass(frozen=True)
+class DistillationFolder:
+    """The whole folder."""
+
+    path: Path
+
+    @property
+    def config(self) -> Path:
+        """The resolved configuration."""
+        return self.path / CONFIG
+
+    @property
+    def start(self) -> Path:
+        """Run folder of the policy to begin with."""
+        return self.path / "start"
+
+    @property
+    def table(self) -> Path:
+        """The table of all rounds."""
+        return self.path / "rounds.json"
+
+    @property
+    def policy(self) -> Path:
+        """The best round's policy."""
+        return self.path / "policy.npz"
+
+    @property
+    def surrogate(self) -> Path:
+        """The best round's surrogate."""
+        return self.path / "surrogate.npz"
+
+    def round(self, number: int) -> RoundFolder:
+        """Return a round's part; round 0 is the policy begun with."""
+        return RoundFolder(self.path / f"round_{number}")

@@ -1,0 +1,87 @@
+"""A round's verdict: the exact planner judges the policy on held-out terrain, a cell at a time."""
+
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from jaxleas.distillation.config import JudgeConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import Planner, judge_exact, walker
+from jaxleas.evaluation.result_file import CellResult
+from jaxleas.evaluation.suites import make_suite
+from jaxleas.files import read_json, write_json
+from jaxleas.guide.leas import leas
+from jaxleas.training.policy import SteeringPolicy
+from jaxleas.types import InputError
+
+VERSION = 1
+
+
+def judge_round(
+    file: Path,
+    policy: SteeringPolicy,
+    method: str,
+    planner: str,
+    judge: Planner,
+    config: JudgeConfig,
+    progress: Callable[[str], None],
+) -> list[CellResult]:
+    """Judge a policy, or read what was judged before.
+
+    Args:
+        file: where the verdicts are kept.
+        policy: to be judged.
+        method: its name in the results.
+        planner: its name.
+        judge: that asks it.
+        config: which suites, how many starts.
+        progress: told, in words, what is judged now.
+    """
+    if file.is_file():
+        return read_judged(file)
+    env = SteeringEnv(policy.config)
+    cells: list[CellResult] = []
+    for name in config.suites:
+        suite = make_suite(name, config.starts, held_out=True)
+        cells += judge_exact(
+            env,
+            {method: walker(env, leas(env, policy))},
+            suite,
+            {planner: judge},
+            on_guides=lambda cell, *_: progress(f"{cell.name} at {cell.yaw:.0f} deg"),
+        )
+    write_json(
+        file,
+        {
+            "version": VERSION,
+            "held_out": True,
+            "suites": list(config.suites),
+            "planner": planner,
+            "created": datetime.now(UTC).isoformat(timespec="seconds"),
+            "cells": [cell.model_dump(mode="json") for cell in cells],
+        },
+    )
+    return cells
+
+
+def read_judged(file: Path) -> list[CellResult]:
+    """Read a round's verdicts.
+
+    Raises:
+        InputError: the file is not one.
+    """
+    content = read_json(file)
+    try:
+        return [CellResult.model_validate(cell) for cell in content["cells"]]
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{file} holds no verdicts of a round: {error}") from error
+
+
+def exact_success(cells: Sequence[CellResult]) -> float:
+    """Return the mean share of starts that reached their goal with contacts all the way."""
+    return sum(cell.planned or 0.0 for cell in cells) / len(cells)
+
+
+def summary(cells: Sequence[CellResult]) -> Mapping[str, float]:
+    """Return each cell's exact success by its name."""
+    return {f"{cell.name} {cell.yaw:.0f}°": cell.planned or 0.0 for cell in cells}

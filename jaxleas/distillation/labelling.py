@@ -1,0 +1,150 @@
+"""A round's labels: walk the policy, choose what to ask, let the exact planner answer."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax
+import numpy as np
+from jaxtyping import Float, Int
+
+from jaxleas.distillation.collect import Walks, collect
+from jaxleas.distillation.config import CollectConfig
+from jaxleas.distillation.folder import RoundFolder
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.world import World
+from jaxleas.files import write_json
+from jaxleas.guide.files import write_guide_paths
+from jaxleas.labels import PlannerSettings, Workers, label_shards, plan_shards
+from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
+from jaxleas.terrain.scene import Scene, write_scene
+from jaxleas.training.policy import SteeringPolicy
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What guide paths are walked on.
+
+    Attributes:
+        env: the task.
+        world: its terrains, as the policy is trained on.
+        scenes: the same, exactly: one for each map of the world's atlas.
+    """
+
+    env: SteeringEnv
+    world: World
+    scenes: tuple[Scene, ...]
+
+
+def label_round(
+    folder: RoundFolder,
+    ground: Ground,
+    policy: SteeringPolicy,
+    surrogate: Surrogate | None,
+    planner: str,
+    settings: PlannerSettings,
+    config: CollectConfig,
+    seed: int,
+    workers: Workers,
+    progress: Callable[[int, int], None],
+) -> None:
+    """Leave scenes, guide paths and verdicts in a round's folder; what is there stays.
+
+    Args:
+        folder: of the round.
+        ground: to walk on.
+        policy: that walks.
+        surrogate: of the round before, to choose by; None in the first.
+        planner: its name.
+        settings: of the planner.
+        config: how many, how long, how disturbed.
+        seed: of the walks and of the choice.
+        workers: that judge.
+        progress: told how many guide paths of how many have verdicts.
+    """
+    begun = time.perf_counter()
+    files = sorted(folder.labels.glob("guides_*.npz"))
+    if not (folder.labels / "chosen.json").is_file():
+        walks = _walk(ground, policy, surrogate, config, seed)
+        paths = walks.paths(ground.env.config.limits.time_step)
+        for number in np.unique(walks.map_index).tolist():
+            chosen = [paths[row] for row in np.flatnonzero(walks.map_index == number)]
+            write_scene(folder.labels / f"scene_{number:04d}.json", ground.scenes[number])
+            write_guide_paths(
+                folder.labels / f"guides_{number:04d}.npz", chosen, ["stopped"] * len(chosen)
+            )
+        write_json(folder.labels / "chosen.json", {"guides": len(paths), "seed": seed})
+        files = sorted(folder.labels.glob("guides_*.npz"))
+    shards = [
+        shard
+        for guides in files
+        for shard in plan_shards(
+            [guides],
+            guides.with_name(guides.name.replace("guides", "scene")).with_suffix(".json"),
+            planner,
+            settings,
+            folder.labels / "verdicts",
+        )
+    ]
+    total, done = sum(map(len, shards)), 0
+
+    def advance(count: int) -> None:
+        nonlocal done
+        done += count
+        progress(done, total)
+
+    judged, _ = label_shards(shards, workers, advance)
+    seconds = time.perf_counter() - begun
+    write_json(folder.labelled, {"guides": total, "judged": judged, "seconds": round(seconds, 1)})
+
+
+def _walk(
+    ground: Ground,
+    policy: SteeringPolicy,
+    surrogate: Surrogate | None,
+    config: CollectConfig,
+    seed: int,
+) -> Walks:
+    wanted = config.guides if surrogate is None else config.later_guides
+    count = wanted if surrogate is None else wanted * config.candidates
+    walks = collect(
+        ground.env,
+        ground.world,
+        policy,
+        jax.random.key(seed),
+        count,
+        config.steps,
+        np.array(config.disturbances),
+    )
+    if surrogate is None or config.candidates == 1:
+        return walks
+    keep_every = surrogate.identity.keep_every
+    paths = walks.paths(ground.env.config.limits.time_step)
+    labelled = label_walks(
+        paths,
+        [len(path) for path in paths],
+        walks.map_index.tolist(),
+        keep_every,
+        1 + config.steps // keep_every,
+    )
+    failure = foreseen_failure(surrogate, ground.env, ground.world.atlas, labelled)
+    return walks[choose(failure, wanted, np.random.default_rng(seed))]
+
+
+def choose(
+    failure: Float[np.ndarray, " N"], wanted: int, generator: np.random.Generator
+) -> Int[np.ndarray, " wanted"]:
+    """Choose whom to ask about: half at random, half where the verdict is least sure.
+
+    The random half keeps the labels honest where the surrogate is sure and wrong.
+
+    Args:
+        failure: foreseen probability of failure of each candidate.
+        wanted: number to choose, at most N.
+        generator: to draw with.
+    """
+    order = generator.permutation(len(failure))
+    at_random, rest = order[: wanted // 2], order[wanted // 2 :]
+    unsure = failure[rest] * (1.0 - failure[rest])
+    least_sure = rest[np.argsort(-unsure, kind="stable")[: wanted - len(at_random)]]
+    return np.sort(np.concatenate([at_random, least_sure]))

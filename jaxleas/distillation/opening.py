@@ -1,0 +1,66 @@
+"""Begin a distillation's folder: its configuration, and the policy to begin with."""
+
+from pathlib import Path
+
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.files import read_json, write_json, write_text
+from jaxleas.labels.settings import settings_from
+from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.loop import train
+from jaxleas.training.run_folder import RunFolder
+from jaxleas.types.errors import InputError
+
+_BEGUN_WITH = "begun_with.json"
+
+
+def open_folder(
+    folder: DistillationFolder, config: DistillationConfig, start: Path | None
+) -> DistillationConfig:
+    """Write the configuration, and where the policy to begin with lies; or go on in a folder.
+
+    Raises:
+        InputError: the folder is something else's, or a distillation's with another configuration
+            or another policy to begin with; the planner's parameters cannot be used; or `start` is
+            no run folder.
+    """
+    settings_from(config.planner, **config.parameters)
+    if start is not None:
+        RunFolder.open(start)
+    where = None if start is None else str(Path(start).resolve())
+    if folder.config.is_file():
+        if load_config(DistillationConfig, folder.config) != config:
+            raise InputError(
+                f"{folder.path} is a distillation with another configuration, {folder.config}:"
+                " give that one, or another --out"
+            )
+        begun_with = read_json(folder.path / _BEGUN_WITH)["run"]
+        if begun_with != where:
+            raise InputError(
+                f"{folder.path} was begun with {begun_with or 'a policy of its own'}, not with"
+                f" {where or 'one of its own'}: give that --start, or another --out"
+            )
+        return config
+    if folder.path.exists() and (not folder.path.is_dir() or any(folder.path.iterdir())):
+        raise InputError(f"{folder.path} exists and is no distillation: give another --out")
+    write_json(folder.path / _BEGUN_WITH, {"run": where})
+    write_text(folder.config, to_yaml(config))
+    return config
+
+
+def train_start(folder: DistillationFolder, config: DistillationConfig) -> Path:
+    """Return the run folder of the policy to begin with, trained first where none was given.
+
+    Raises:
+        InputError: this is no distillation's folder.
+    """
+    where = read_json(folder.path / _BEGUN_WITH)["run"]
+    if where is not None:
+        return Path(where)
+    if (folder.start / "config.yaml").is_file():
+        run = RunFolder.open(folder.start, writing=True, needs_checkpoint=False)
+    else:
+        run = RunFolder.create(folder.start, to_yaml(config.run), ["jaxleas", "distill"])
+    with run:
+        train(load_config(type(config.run), run.config), run)
+    return folder.start

@@ -1,0 +1,84 @@
+"""A round's practice: the policy goes on learning while the surrogate ends its episodes."""
+
+import time
+from pathlib import Path
+
+import jax
+
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import RoundFolder
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.files import write_json
+from jaxleas.surrogates import Surrogate, SurrogateForesight
+from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.training.config import NetworkConfig, RunConfig
+from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.loop import train
+from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.run_folder import RunFolder
+from jaxleas.training.train_state import Learned, fresh_networks
+
+
+def practice_config(config: DistillationConfig, start: RunConfig) -> RunConfig:
+    """Return the configuration of a round's run.
+
+    The networks are those of the policy begun with. Falling is as dear from the first step on as
+    it had become at the end of the first training: this policy is past daring.
+
+    Args:
+        config: of the distillation.
+        start: of the run begun with.
+    """
+    changes = {
+        "steps": config.practice.steps,
+        "learning_rate": config.practice.learning_rate,
+        "final_learning_rate": config.practice.final_learning_rate,
+    }
+    ppo = start.ppo.model_copy(update=changes)
+    reward = start.env.reward.model_copy(update={"failure": start.ppo.final_failure})
+    env = start.env.model_copy(update={"reward": reward})
+    return start.model_copy(update={"ppo": ppo, "env": env})
+
+
+def practise(
+    folder: RoundFolder, config: RunConfig, surrogate: Surrogate, learned: Learned, threshold: float
+) -> None:
+    """Train in the round's run folder; an interrupted practice is gone on with.
+
+    Args:
+        folder: of the round.
+        config: of the run.
+        surrogate: that ends episodes, beside reachability and collision.
+        learned: to begin with.
+        threshold: the risk dial.
+    """
+    begun = time.perf_counter()
+    if (folder.run / "config.yaml").is_file():
+        run = RunFolder.open(folder.run, writing=True, needs_checkpoint=False)
+    else:
+        run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
+    foresight = SurrogateForesight(surrogate, threshold)
+    with run:
+        train(config, run, foresight=foresight, learned=learned)
+    seconds = round(time.perf_counter() - begun, 1)
+    write_json(
+        folder.practised, {"steps": config.ppo.updates * config.ppo.batch, "seconds": seconds}
+    )
+
+
+def read_run(path: str | Path) -> tuple[RunConfig, Learned]:
+    """Return the configuration of a run and what it has learned by its newest checkpoint.
+
+    Raises:
+        InputError: it is no run folder, or has no checkpoint that can be read.
+    """
+    run = RunFolder.open(path)
+    config = load_config(RunConfig, run.config)
+    like = jax.eval_shape(lambda: _fresh(config.network, SteeringEnv(config.env)))
+    _, learned, _ = Checkpoints(run.checkpoints).latest(like, partial=True)
+    return config, learned
+
+
+def _fresh(network: NetworkConfig, env: SteeringEnv) -> Learned:
+    params = fresh_networks(make_networks(network, env), jax.random.key(0), jax.random.key(0))
+    return Learned(params, params.policy, initial_normaliser(network, env))

@@ -1,0 +1,28 @@
+"""The table of a distillation's rounds, as text."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jaxleas.distillation.distill import RoundResult
+
+
+def table_of(results: "Sequence[RoundResult]") -> str:
+    """Return the exact success of each round, cell by cell, in per cent."""
+    names = list(results[0].cells)
+    heads = ["round", "labels", "minutes", *names, "mean"]
+    rows = [
+        [
+            str(each.round),
+            str(each.labels),
+            f"{sum(each.seconds.values()) / 60:.1f}",
+            *(f"{100 * each.cells[name]:.1f}" for name in names),
+            f"{100 * each.success:.1f}",
+        ]
+        for each in results
+    ]
+    widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
+    return "\n".join(
+        "  ".join(text.rjust(width) for text, width in zip(row, widths, strict=True))
+        for row in [heads, *rows]
+    )

@@ -1,0 +1,95 @@
+"""The function behind `jaxleas fit`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from jaxleas.types.errors import InputError
+
+
+def fit(
+    labels: Sequence[Path],
+    *,
+    out: Path,
+    planner: Literal["sampling", "mip", "sl1m"] | None = None,
+    policy: Path | None = None,
+    where: Sequence[Path] = (),
+    epochs: int = 12,
+    code: int = 48,
+    hidden: int = 32,
+    seed: int = 0,
+) -> None:
+    """Fit a surrogate, a contact planner's learned stand-in, to its verdicts.
+
+    Args:
+        labels: folders that `jaxleas label` wrote.
+        out: surrogate file, .npz.
+        planner: that must have judged; any, if not given.
+        policy: run folder or policy whose environment the surrogate is for; by default the
+            environment's defaults.
+        where: more folders to look for guide paths and scenes in.
+        epochs: passes over the guide paths.
+        code: outputs of the network's encoder.
+        hidden: values that the network carries along.
+        seed: of the fit.
+    """
+    from pydantic import ValidationError
+
+    from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+    from jaxleas.guide.loading import load_policy
+    from jaxleas.surrogates.fit import FitSettings
+    from jaxleas.surrogates.fit import fit as fit_surrogate
+    from jaxleas.surrogates.label_files import read_labels
+    from jaxleas.surrogates.surrogate import Identity
+    from jaxleas.surrogates.surrogate_file import write_surrogate
+    from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION
+
+    try:
+        settings = FitSettings(epochs=epochs, code=code, hidden=hidden, seed=seed)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise InputError(f"--{first['loc'][0]} {first['input']}: {first['msg'].lower()}") from error
+    config = SteeringConfig() if policy is None else load_policy(policy).config
+    env = SteeringEnv(config)
+    found = read_labels(list(labels), list(where), DEFAULT_RESOLUTION)
+    if planner is not None and found.planner != planner:
+        raise InputError(
+            f"{labels[0]} holds verdicts of the {found.planner} planner, not of {planner}"
+        )
+    identity = Identity(
+        planner=found.planner,
+        parameters=found.parameters,
+        robot=config.robot,
+        observation=config.observation,
+        height_low=config.height_low,
+        height_high=config.height_high,
+    )
+
+    def progress(epoch: int, loss: float) -> None:
+        print(f"epoch {epoch} of {epochs}: {loss:.5f} nats on the terrain held out", flush=True)
+
+    surrogate = fit_surrogate(found.walks, found.atlas, env, identity, settings, progress)
+    write_surrogate(out, surrogate)
+    print(describe(surrogate.report))
+    if found.passed_over:
+        print(f"{found.passed_over} guide paths had no verdict within the planner's time limit")
+    print(f"{out}: stands in for the {found.planner} planner")
+
+
+def describe(report: dict[str, Any]) -> str:
+    """Return a surrogate's report as a few lines for a person."""
+    guides, terrains = report["guides"], report["terrains"]
+    lines = [
+        f"learned from {guides['learned']} guide paths on {terrains['learned']} terrains,"
+        f" calibrated on {guides['calibration']} on {terrains['calibration']}; judged on"
+        f" {report['guide']['count']} on {terrains['judged']} others:"
+    ]
+    for name in ("stretch", "guide"):
+        part = report[name]
+        lines.append(
+            f"  by {name}: {part['failed']} of {part['count']} failed; balanced accuracy"
+            f" {100 * part['balanced_accuracy']:.1f} %, area under the curve"
+            f" {part['area_under_curve']:.3f}, calibration error"
+            f" {100 * part['calibration_error']:.2f} %"
+        )
+    return "\n".join(lines)

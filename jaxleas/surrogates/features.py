@@ -1,0 +1,66 @@
+"""What a surrogate is told at a kept configuration: local terrain, and motion since the last."""
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Float, Int
+
+from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
+from jaxleas.types import RootMotion
+
+MOTION_FEATURES = 7  # displacement, turn, velocity
+# The scales make features of a walk at the desired speed of order one.
+_SPEED = 0.1  # [m/s]
+_TIME_STEP = 0.2  # [s]
+_TURN = 0.07  # in one time step at the greatest turn rate [rad]
+
+
+def walk_features(
+    heights_in_root: Float[Array, "*batch points"],
+    motion: RootMotion,
+    last: RootMotion,
+    keep_every: int,
+    height_range: tuple[float, float],
+) -> Float[Array, "*batch size"]:
+    """Return the features of one kept configuration.
+
+    Args:
+        heights_in_root: local terrain relative to the root [m].
+        motion: of the root now.
+        last: motion at the kept configuration before; at the first, the same.
+        keep_every: time steps from one kept configuration to the next.
+        height_range: between which heights are clipped [m].
+    """
+    low, high = height_range
+    heights = jnp.clip(heights_in_root, low, high)
+    heights = (2.0 * heights - (low + high)) / (high - low)
+    displacement = rotate_by_yaw(motion.position - last.position, -motion.yaw)
+    turn = wrap_angle(motion.yaw - last.yaw)
+    velocity = rotate_by_yaw(motion.velocity, -motion.yaw)
+    return jnp.concatenate(
+        [
+            heights,
+            displacement / (keep_every * _TIME_STEP * _SPEED),
+            turn[..., None] / (keep_every * _TURN),
+            velocity / _SPEED,
+        ],
+        axis=-1,
+    )
+
+
+def mirrored(
+    points_in_root: Float[np.ndarray, "points 2"],
+) -> tuple[Int[np.ndarray, " size"], Float[np.ndarray, " size"]]:
+    """Return permutation and sign that make a walk's features those of its mirror image.
+
+    Args:
+        points_in_root: of the local terrain [m]; the set is symmetric in y = 0.
+    """
+    image = points_in_root * np.array([1.0, -1.0])
+    distance = np.linalg.norm(image[:, None] - points_in_root[None], axis=-1)
+    points = np.argmin(distance, axis=1)
+    if np.max(np.min(distance, axis=1)) > 1e-6 or len(np.unique(points)) < len(points):
+        raise ValueError("the points of the local terrain are not symmetric in y = 0")
+    motion = np.arange(len(points), len(points) + MOTION_FEATURES)
+    sideways = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0])  # displacement, turn, velocity
+    return np.concatenate([points, motion]), np.concatenate([np.ones(len(points)), sideways])

@@ -1,0 +1,226 @@
+"""Fit a surrogate to labelled walks: maximum likelihood, calibrated and judged on other terrain."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import optax
+from jax import Array
+from pydantic import Field
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.surrogates.calibration import platt
+from jaxleas.surrogates.features import MOTION_FEATURES, mirrored, walk_features
+from jaxleas.surrogates.network import Weights, initial_weights, recur
+from jaxleas.surrogates.surrogate import Identity, Surrogate
+from jaxleas.surrogates.verdict_report import failure_along, report_on
+from jaxleas.surrogates.walks import LabelledWalks
+from jaxleas.terrain.atlas import Atlas
+from jaxleas.types import InputError, RootMotion
+from jaxleas.types.strict import Strict
+
+LEAST_FAILURES = 20  # on the terrain that is learned from
+LEAST_TERRAINS = 4
+_CHUNK = 512  # walks whose hazards are computed at once
+
+
+class FitSettings(Strict):
+    """How a surrogate is fitted."""
+
+    code: Annotated[int, Field(ge=1)] = 48
+    """Outputs of the encoder."""
+    hidden: Annotated[int, Field(ge=1)] = 32
+    """Values that are carried from one kept configuration to the next."""
+    epochs: Annotated[int, Field(ge=1)] = 12
+    """Passes over the walks."""
+    minibatch: Annotated[int, Field(ge=1)] = 128
+    """Walks a gradient step."""
+    learning_rate: Annotated[float, Field(gt=0.0)] = 3e-3
+    """At the start; it falls to nothing along a cosine."""
+    weight_decay: Annotated[float, Field(ge=0.0)] = 0.03
+    mirror: bool = True
+    """Learn from each walk's mirror image as often as from the walk itself."""
+    held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.25
+    """Share of the terrains that is not learned from: half of it calibrates, half judges."""
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+@dataclass(frozen=True)
+class Split:
+    """Walks by the terrain they are on."""
+
+    learned: LabelledWalks
+    calibration: LabelledWalks
+    judged: LabelledWalks
+
+
+def split_by_terrain(walks: LabelledWalks, share: float, seed: int) -> Split:
+    """Hold out terrains: nothing seen in learning is seen again in calibration or judgement.
+
+    Raises:
+        InputError: there are too few terrains or verdicts of one class.
+    """
+    maps = np.unique(walks.map_index)
+    if len(maps) < LEAST_TERRAINS:
+        raise InputError(
+            f"the labels come from {len(maps)} terrains; to learn on some and to judge on others"
+            f" it takes {LEAST_TERRAINS} or more"
+        )
+    shuffled = np.random.default_rng(seed).permutation(maps)
+    held = max(2, round(share * len(maps)))
+    parts = shuffled[held:], shuffled[: held // 2], shuffled[held // 2 : held]
+    split = Split(*(walks[np.isin(walks.map_index, part)] for part in parts))
+    for name, part, least in (
+        ("to learn from", split.learned, LEAST_FAILURES),
+        ("to calibrate by", split.calibration, 2),
+        ("to judge by", split.judged, 2),
+    ):
+        failures, passes = int(np.sum(part.failed_at >= 0)), int(np.sum(part.failed_at < 0))
+        if min(failures, passes) < least:
+            raise InputError(
+                f"of the guide paths {name} the planner failed {failures} and passed {passes};"
+                f" a surrogate needs {least} of each: label more of them"
+            )
+    return split
+
+
+def fit(
+    walks: LabelledWalks,
+    atlas: Atlas,
+    env: SteeringEnv,
+    identity: Identity,
+    settings: FitSettings = FitSettings(),  # noqa: B008 (frozen)
+    progress: Callable[[int, float], None] = lambda epoch, loss: None,
+) -> Surrogate:
+    """Fit a surrogate to labelled walks.
+
+    Each kept configuration that the planner got to counts as passed, the one where it failed as
+    failed, those after it not at all: the likelihood of a walk with a hazard (discrete survival
+    analysis). Failures are rare, and are not weighted: that would spoil the probabilities.
+
+    Args:
+        walks: with verdicts.
+        atlas: terrains of the walks.
+        env: whose local terrain the surrogate will be shown.
+        identity: whose stand-in it is.
+        settings: of the fit.
+        progress: told epoch and loss after each epoch.
+
+    Raises:
+        InputError: too few terrains, or too few verdicts of one class.
+    """
+    split = split_by_terrain(walks, settings.held_out, settings.seed)
+    hazards = _Hazards(env, identity)
+    key, order_key = jax.random.split(jax.random.key(settings.seed))
+    size = len(env.points_in_root) + MOTION_FEATURES
+    weights = initial_weights(key, size, settings.code, settings.hidden)
+    steps = settings.epochs * -(-len(split.learned) // settings.minibatch)
+    rate = optax.cosine_decay_schedule(settings.learning_rate, steps)
+    optimiser = optax.chain(
+        optax.clip_by_global_norm(1.0), optax.adamw(rate, weight_decay=settings.weight_decay)
+    )
+    moments = optimiser.init(weights)  # type: ignore[arg-type]
+
+    @jax.jit
+    def improve(weights: Weights, moments: Any, walks: dict[str, Array]):
+        loss, gradient = jax.value_and_grad(hazards.loss)(weights, atlas, walks)
+        updates, moments = optimiser.update(gradient, moments, weights)  # type: ignore[arg-type]
+        return optax.apply_updates(weights, updates), moments, loss  # type: ignore[arg-type]
+
+    generator = np.random.default_rng(jax.random.bits(order_key, dtype=jnp.uint32).item())
+    best, best_loss = weights, np.inf
+    for epoch in range(settings.epochs):
+        for rows in _minibatches(generator, len(split.learned), settings.minibatch):
+            walked = arrays_of(split.learned[rows])
+            flip = generator.random(len(rows)) < 0.5 * settings.mirror
+            weights, moments, _ = improve(weights, moments, walked | {"flip": jnp.asarray(flip)})
+        held_loss = hazards.mean_loss(weights, atlas, split.calibration)
+        if held_loss < best_loss:
+            best, best_loss = weights, held_loss
+        progress(epoch + 1, held_loss)
+    logit = hazards.logits(best, atlas, split.calibration)
+    known = split.calibration.is_known
+    scale, shift = platt(logit[known], split.calibration.failed[known])
+    surrogate = Surrogate(best, jnp.float32(scale), jnp.float32(shift), identity)
+    report = report_on(
+        (scale * logit + shift, split.calibration),
+        (scale * hazards.logits(best, atlas, split.judged) + shift, split.judged),
+        learned=split.learned,
+    )
+    return surrogate.replace(report=report)  # type: ignore[attr-defined]
+
+
+def foreseen_failure(
+    surrogate: Surrogate, env: SteeringEnv, atlas: Atlas, walks: LabelledWalks
+) -> np.ndarray:
+    """Return the probability that the planner fails somewhere along each walk."""
+    hazards = _Hazards(env, surrogate.identity)
+    logit = hazards.logits(surrogate.weights, atlas, walks)
+    logit = float(surrogate.scale) * logit + float(surrogate.shift)
+    return failure_along(logit, walks)
+
+
+class _Hazards:
+    """The network along walks: logits of the hazard at every kept configuration."""
+
+    def __init__(self, env: SteeringEnv, identity: Identity):
+        self.env = env
+        self.identity = identity
+        self.mirror = mirrored(env.points_in_root)
+        self._jitted = jax.jit(self._logits)
+
+    def logits(self, weights: Weights, atlas: Atlas, walks: LabelledWalks) -> np.ndarray:
+        """Return logits `[N, K]`, a chunk of walks at a time."""
+        parts = []
+        for first in range(0, len(walks), _CHUNK):
+            rows = np.minimum(np.arange(first, first + _CHUNK), len(walks) - 1)
+            parts.append(np.asarray(self._jitted(weights, atlas, arrays_of(walks[rows]))))
+        return np.concatenate(parts)[: len(walks)].astype(np.float64)
+
+    def mean_loss(self, weights: Weights, atlas: Atlas, walks: LabelledWalks) -> float:
+        """Return the negative log-likelihood per known kept configuration [nats]."""
+        logit, known = self.logits(weights, atlas, walks), walks.is_known
+        return float(np.mean((np.logaddexp(0.0, logit) - walks.failed * logit)[known]))
+
+    def loss(self, weights: Weights, atlas: Atlas, walks: dict[str, Array]) -> Array:
+        """Return the same inside a gradient step."""
+        logit = self._logits(weights, atlas, walks)
+        each = jnp.logaddexp(0.0, logit) - walks["failed"] * logit
+        return jnp.sum(each * walks["is_known"]) / jnp.sum(walks["is_known"])
+
+    def _logits(self, weights: Weights, atlas: Atlas, walks: dict[str, Array]) -> Array:
+        motion = RootMotion(walks["position"], walks["velocity"], walks["yaw"])
+        map_index = jnp.broadcast_to(walks["map_index"][:, None], motion.yaw.shape)
+        last = jax.tree.map(lambda leaf: jnp.concatenate([leaf[:, :1], leaf[:, :-1]], 1), motion)
+        features = walk_features(
+            self.env.local_heights(atlas, map_index, motion),
+            motion,
+            last,
+            self.identity.keep_every,
+            (self.identity.height_low, self.identity.height_high),
+        )
+        if "flip" in walks:
+            order, sign = self.mirror
+            image = features[..., order] * jnp.asarray(sign, features.dtype)
+            features = jnp.where(walks["flip"][:, None, None], image, features)
+        hidden = jnp.zeros((len(map_index), weights.hidden_size))
+        _, logit = jax.lax.scan(
+            lambda carry, now: recur(weights, carry, now), hidden, jnp.swapaxes(features, 0, 1)
+        )
+        return logit.T
+
+
+def arrays_of(walks: LabelledWalks) -> dict[str, Array]:
+    """Return what the network needs of some walks, as device arrays."""
+    names = ("position", "yaw", "velocity", "map_index", "is_known", "failed")
+    return {name: jnp.asarray(getattr(walks, name)) for name in names}
+
+
+def _minibatches(generator: np.random.Generator, count: int, size: int) -> Iterator[np.ndarray]:
+    """Yield rows in random order; the last minibatch is filled up from the first."""
+    order = generator.permutation(count)
+    for first in range(0, count, size):
+        yield np.take(order, np.arange(first, first + size), mode="wrap")

@@ -1,0 +1,67 @@
+"""A fitted surrogate: a contact planner's learned stand-in, and exactly which planner's."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+from jaxtyping import Float
+from pydantic import JsonValue
+
+from jaxleas.surrogates.network import Weights, recur
+from jaxleas.types.strict import Strict
+
+
+class Identity(Strict):
+    """Whose stand-in a surrogate is, and for which robot and observation."""
+
+    planner: str
+    """sampling, mip or sl1m"""
+    parameters: dict[str, JsonValue]
+    """of the planner"""
+    robot: str
+    observation: str
+    """layout of the local terrain"""
+    height_low: float
+    """heights are clipped from below here [m]"""
+    height_high: float
+    """and from above here [m]"""
+
+    @property
+    def keep_every(self) -> int:
+        """Time steps from one configuration that the planner is asked about to the next."""
+        return int(self.parameters["keep_every"])  # type: ignore[arg-type]
+
+
+@struct.dataclass
+class Surrogate:
+    """A network, its calibration and its identity.
+
+    Attributes:
+        weights: of the network.
+        scale: of the logit, from calibration (Platt 1999).
+        shift: likewise.
+        identity: whose stand-in this is.
+        report: what fitting measured, as plain JSON values.
+    """
+
+    weights: Weights
+    scale: Float[Array, ""]
+    shift: Float[Array, ""]
+    identity: Identity = struct.field(pytree_node=False)
+    report: Any = struct.field(pytree_node=False, default=())
+
+    def begin(self, batch: tuple[int, ...]) -> Float[Array, "*batch hidden"]:
+        """Return the hidden state before a walk's first kept configuration."""
+        return jnp.zeros((*batch, self.weights.hidden_size))
+
+    def hazard(
+        self, hidden: Float[Array, "*batch hidden"], features: Float[Array, "*batch size"]
+    ) -> tuple[Float[Array, "*batch hidden"], Float[Array, "*batch"]]:
+        """Return the next hidden state and the probability that the planner fails just here.
+
+        "Here" is from the kept configuration before to this one, given that it got that far.
+        """
+        hidden, logit = recur(self.weights, hidden, features)
+        return hidden, jax.nn.sigmoid(self.scale * logit + self.shift)

@@ -1,0 +1,78 @@
+"""A surrogate in the environment: when it looks, what it remembers, how often it ends a walk."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from jaxleas.surrogates import Surrogate, SurrogateForesight
+from jaxleas.surrogates.features import MOTION_FEATURES, walk_features
+from jaxleas.surrogates.network import initial_weights
+from jaxleas.types import InputError, RootMotion
+
+from .walkers import KEEP_EVERY, env, identity
+
+POINTS = len(env().points_in_root)
+
+
+def surrogate(hazard=None, seed=0):
+    weights = initial_weights(jax.random.key(seed), POINTS + MOTION_FEATURES, 8, 6)
+    if hazard is None:
+        head = jax.random.normal(jax.random.key(1), weights.head.shape)
+        weights = weights.replace(head=head, head_bias=jnp.float32(-1.0))
+    else:
+        weights = weights.replace(head_bias=jnp.float32(np.log(hazard / (1 - hazard))))
+    return Surrogate(weights, jnp.float32(1.0), jnp.float32(0.0), identity())
+
+
+def walk(count, steps, seed=0):
+    """Root motions and local heights of a random walk, one after another."""
+    generator = np.random.default_rng(seed)
+    for step in range(steps + 1):
+        yield (
+            jnp.asarray(generator.uniform(-1.4, -0.2, (count, POINTS)), jnp.float32),
+            RootMotion(
+                jnp.asarray(generator.normal(size=(count, 3)) + 0.02 * step, jnp.float32),
+                jnp.asarray(0.1 * generator.normal(size=(count, 3)), jnp.float32),
+                jnp.asarray(generator.uniform(-3, 3, count), jnp.float32),
+            ),
+        )
+
+
+def test_survival_is_the_product_over_kept_configurations_alone():
+    judge, one = SurrogateForesight(surrogate()), surrogate()
+    steps = list(walk(4, 3 * KEEP_EVERY))
+    margin, memory = judge.begin(*steps[0], jnp.full(4, 0.25))
+    hidden, last, survival = one.begin((4,)), steps[0][1], np.ones(4)
+    for number, (heights, motion) in enumerate(steps):
+        if number:
+            margin, memory = judge.follow(memory, heights, motion)
+        if number % KEEP_EVERY == 0:
+            features = walk_features(heights, motion, last, KEEP_EVERY, (-1.4, -0.2))
+            hidden, hazard = one.hazard(hidden, features)
+            survival, last = survival * (1 - np.asarray(hazard)), motion
+        np.testing.assert_allclose(margin, survival - 0.25, atol=1e-5)
+    assert np.all(survival < 0.95)  # the test is not about ones
+
+
+def test_walks_end_as_often_as_the_hazard_says():
+    count, hazard = 20_000, 0.2
+    judge = SurrogateForesight(surrogate(hazard))
+    chance = jax.random.uniform(jax.random.key(5), (count,))
+    heights = jnp.full((count, POINTS), -0.95)
+    still = RootMotion(jnp.zeros((count, 3)), jnp.zeros((count, 3)), jnp.zeros(count))
+    margin, memory = judge.begin(heights, still, chance)
+    for kept in range(1, 4):
+        assert np.mean(margin < 0) == pytest.approx(1 - (1 - hazard) ** kept, abs=0.012)
+        for _ in range(KEEP_EVERY):
+            margin, memory = judge.follow(memory, heights, still)
+
+
+def test_the_risk_dial_ends_what_has_become_too_unsure():
+    judge = SurrogateForesight(surrogate(0.2), threshold=0.9)
+    heights = jnp.full((3, POINTS), -0.95)
+    still = RootMotion(jnp.zeros((3, 3)), jnp.zeros((3, 3)), jnp.zeros(3))
+    margin, _ = judge.begin(heights, still, jnp.array([0.0, 0.5, 0.99]))
+    assert np.all(margin < 0.0)
+    with pytest.raises(InputError, match=r"threshold is 1\.0"):
+        SurrogateForesight(surrogate(), threshold=1.0)

@@ -1,0 +1,84 @@
+"""Features and network against slow twins, and the mirror law."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from jaxleas.surrogates.features import MOTION_FEATURES, mirrored, walk_features
+from jaxleas.surrogates.network import initial_weights, recur
+from jaxleas.types import RootMotion
+
+from .walkers import env
+
+
+def motion(generator, count=6):
+    return RootMotion(
+        position=jnp.asarray(generator.normal(size=(count, 3)), jnp.float32),
+        velocity=jnp.asarray(0.1 * generator.normal(size=(count, 3)), jnp.float32),
+        yaw=jnp.asarray(generator.uniform(-3, 3, count), jnp.float32),
+    )
+
+
+def test_features_equal_the_slow_twin():
+    generator = np.random.default_rng(0)
+    now, last = motion(generator), motion(generator)
+    heights = generator.uniform(-3.0, 1.0, (6, 9)).astype(np.float32)
+    found = walk_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
+    for row in range(6):
+        yaw = float(now.yaw[row])
+        into_root = np.array(
+            [[np.cos(yaw), np.sin(yaw), 0], [-np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]]
+        )
+        step = into_root @ np.asarray(now.position[row] - last.position[row])
+        turn = yaw - float(last.yaw[row])
+        turn = (turn + np.pi) % (2 * np.pi) - np.pi
+        expected = [
+            *((np.clip(heights[row], -1.4, -0.2) + 0.8) / 0.6),
+            *(step / 0.1),
+            turn / 0.35,
+            *(into_root @ np.asarray(now.velocity[row]) / 0.1),
+        ]
+        np.testing.assert_allclose(found[row], expected, atol=2e-5)
+
+
+def test_features_of_a_mirrored_walk_are_the_mirrored_features():
+    generator = np.random.default_rng(1)
+    points = env().points_in_root
+    now, last = motion(generator), motion(generator)
+    heights = generator.uniform(-1.4, -0.2, (6, len(points))).astype(np.float32)
+    order, sign = mirrored(points)
+
+    def image(one: RootMotion) -> RootMotion:
+        flip = jnp.array([1.0, -1.0, 1.0])
+        return RootMotion(one.position * flip, one.velocity * flip, -one.yaw)
+
+    swapped = heights[:, order[: len(points)]]  # what lay to the left now lies to the right
+    np.testing.assert_allclose(points[order[: len(points)]], points * [1, -1], atol=1e-9)
+    direct = walk_features(jnp.asarray(swapped), image(now), image(last), 5, (-1.4, -0.2))
+    plain = walk_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
+    np.testing.assert_allclose(direct, plain[:, order] * sign, atol=2e-5)
+
+
+def test_the_network_equals_the_slow_twin():
+    weights = initial_weights(jax.random.key(0), 5 + MOTION_FEATURES, code=7, hidden=4)
+    weights = jax.tree.map(
+        lambda leaf: leaf + 0.1 * jax.random.normal(jax.random.key(leaf.size), leaf.shape), weights
+    )
+    features = np.random.default_rng(2).normal(size=(3, 5 + MOTION_FEATURES)).astype(np.float32)
+    hidden = np.random.default_rng(3).normal(size=(3, 4)).astype(np.float32)
+    after, logit = recur(weights, jnp.asarray(hidden), jnp.asarray(features))
+
+    def sigmoid(x):
+        return 1.0 / (1.0 + np.exp(-x))
+
+    for row in range(3):
+        code = np.maximum(features[row] @ weights.encoder + weights.encoder_bias, 0.0)
+        gates = sigmoid(np.concatenate([code, hidden[row]]) @ weights.gates + weights.gates_bias)
+        reset, update = gates[:4], gates[4:]
+        mixed = np.concatenate([code, reset * hidden[row]])
+        candidate = np.tanh(mixed @ weights.candidate + weights.candidate_bias)
+        expected = update * hidden[row] + (1 - update) * candidate
+        np.testing.assert_allclose(after[row], expected, atol=1e-5)
+        np.testing.assert_allclose(
+            logit[row], expected @ weights.head + weights.head_bias, atol=1e-5
+        )
