@@ -115,14 +115,15 @@ def longest(walks: Walks, metres: float) -> tuple[Scene, GuidePath]:
     return walks.scenes[walks.scene_index[best]], walks.paths[best]
 
 
-def measure(walks: dict[str, Walks], processes: int, rounds: int) -> list[dict]:
-    """Return the figures."""
+def measure(walks: dict[str, Walks], processes: int, rounds: int, out: Path) -> None:
+    """Measure, planner after planner, and write the figures so far after each."""
     found = []
     scene, path = longest(walks["stairs_up"], 4.0)
     plan_contacts(scene, path)  # makes the data base
     times = [_timed(lambda: plan_contacts(scene, path)) / path.length * 4.0 for _ in range(rounds)]
     found.append(_figure("labels/sampling/4_m_of_stairs", 1e3 * statistics.median(times), "ms",
                          "lower", rounds, 150.0))  # fmt: skip
+    print(f"4 m of stairs: {found[0]['value']:.0f} ms")
     for planner in ("sampling", "mip", "sl1m"):
         with Judge(planner, processes=processes) as judge:
             warm = walks["flat"]
@@ -144,7 +145,7 @@ def measure(walks: dict[str, Walks], processes: int, rounds: int) -> list[dict]:
                     f" {good} of {len(some.paths)} succeed",
                     flush=True,
                 )
-    return found
+        write_json(out, found)
 
 
 def _timed(call) -> float:
@@ -181,9 +182,7 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=5)
     given = parser.parse_args()
-    found = measure(make_walks(given.policy), given.processes, given.rounds)
-    print(f"4 m of stairs: {found[0]['value']:.0f} ms")
-    write_json(given.out, found)
+    measure(make_walks(given.policy), given.processes, given.rounds, given.out)
 
 
 if __name__ == "__main__":
