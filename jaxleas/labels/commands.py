@@ -3,7 +3,10 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from jaxleas.labels.workers import Workers
 
 
 def label(
@@ -22,6 +25,7 @@ def label(
     time_limit: float | None = None,
     max_combinations: int | None = None,
     processes: int | None = None,
+    workers: Literal["processes", "ray"] = "processes",
 ) -> None:
     """Judge guide paths by an exact planner, in parallel; verdicts that are there are kept.
 
@@ -40,6 +44,7 @@ def label(
         time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
         max_combinations: sl1m: after which it gives up, 2000 by default.
         processes: working at the same time; all cores by default.
+        workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
     """
     from time import perf_counter
 
@@ -49,7 +54,7 @@ def label(
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.settings import settings_from
     from jaxleas.labels.shards import read_verdicts
-    from jaxleas.labels.workers import Here, ProcessWorkers, require_count
+    from jaxleas.labels.workers import require_count
 
     settings = settings_from(
         planner,
@@ -63,11 +68,13 @@ def label(
         time_limit=time_limit,
         max_combinations=max_combinations,
     )
-    count = (os.cpu_count() or 1) if processes is None else processes
-    require_count(count)
+    if processes is not None:
+        require_count(processes)
     begun = perf_counter()
-    shards = plan_shards([Path(each) for each in guides], Path(scene), planner, settings, Path(out))
-    team = Here() if min(count, len(shards)) == 1 else ProcessWorkers(min(count, len(shards)))
+    # Absolute: a worker elsewhere has another working folder.
+    files = [Path(each).absolute() for each in guides]
+    shards = plan_shards(files, Path(scene).absolute(), planner, settings, Path(out).absolute())
+    team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
@@ -85,3 +92,15 @@ def label(
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )
+
+
+def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":
+    """Return workers: no more than there are tasks, and this process where one is enough."""
+    from jaxleas.labels.workers import Here, ProcessWorkers
+
+    if workers == "ray":
+        from jaxleas.labels.ray_workers import RayWorkers
+
+        return RayWorkers(processes)
+    count = min(processes or os.cpu_count() or 1, tasks)
+    return Here() if count <= 1 else ProcessWorkers(count)

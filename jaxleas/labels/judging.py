@@ -7,7 +7,6 @@ from typing import Self
 
 import numpy as np
 
-from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.labels.planners import judge_over
 from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.verdict import Verdict
@@ -19,6 +18,7 @@ from jaxleas.types.errors import InputError
 _MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
 """Guide paths: enough to work on abreast, few enough to do again when a worker dies."""
 _TASKS_EACH = 4  # for every worker, so that all end at about the same time
+_ABREAST = "sampling"  # gains from few, large tasks instead: it walks their paths abreast
 
 
 @dataclass(frozen=True)
@@ -119,10 +119,11 @@ class Judge:
     def _groups(self, index: np.ndarray) -> list[np.ndarray]:
         """Return the paths of each task: those over one scene together."""
         order = np.argsort(index, kind="stable")
-        share = -(-len(index) // (_TASKS_EACH * self._workers.count))
-        size = max(1, min(_MOST_A_TASK[self.planner], share))
-        if isinstance(self.settings, SamplingSettings):
-            size = max(size, min(16, _MOST_A_TASK[self.planner]))
+        most, count = _MOST_A_TASK[self.planner], self._workers.count
+        rounds = max(
+            -(-len(index) // (most * count)), 1 if self.planner == _ABREAST else _TASKS_EACH
+        )
+        size = max(1, -(-len(index) // (rounds * count)))
         return [order[first : first + size] for first in range(0, len(order), size)]
 
     def _task(

@@ -2,9 +2,7 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_many
+from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
 from jaxleas.labels.phase_planners import judge_by_phases, mean_step
 from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.verdict import Verdict
@@ -61,14 +59,11 @@ def judge_over(
             judge_by_phases(scenes[index], path, chosen, first + number)
             for number, (path, index) in enumerate(zip(guide_paths, scene_index, strict=True))
         ]
-    verdicts: list[Verdict | None] = [None] * len(guide_paths)
-    index = np.asarray(scene_index, dtype=np.int64)
-    for which in np.unique(index).tolist():
-        numbers = np.flatnonzero(index == which).tolist()
-        plans = plan_many(scenes[which], [guide_paths[n] for n in numbers], chosen)
-        for number, plan in zip(numbers, plans, strict=True):
-            verdicts[number] = _verdict(first + number, guide_paths[number], plan)
-    return [verdict for verdict in verdicts if verdict is not None]
+    plans = plan_over(scenes, guide_paths, scene_index, chosen)
+    return [
+        _verdict(first + number, path, plan)
+        for number, (path, plan) in enumerate(zip(guide_paths, plans, strict=True))
+    ]
 
 
 def _verdict(number: int, path: GuidePath, plan: SamplingPlan) -> Verdict:

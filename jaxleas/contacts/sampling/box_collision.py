@@ -1,9 +1,34 @@
-"""Do turned boxes meet a scene's polygons? By separating axes, for many boxes at once."""
+"""Do turned boxes meet the ground's polygons? By separating axes, for many boxes at once."""
+
+from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.ground import Ground
+
+
+@dataclass(frozen=True)
+class Places:
+    """Boxes that are close together, so that only the polygons near there are looked at.
+
+    Attributes:
+        first: index of each place's first box; the next ones up to the next place's follow it.
+        scene: which of the ground's scenes each place is in.
+    """
+
+    first: Int[np.ndarray, " G"]
+    scene: Int[np.ndarray, " G"]
+
+    @classmethod
+    def of(
+        cls, position: Float[np.ndarray, "M 3"], scene: Int[np.ndarray, " M"], each: int
+    ) -> "Places":
+        """Return the runs of rows at one position, where each row has so many boxes."""
+        new = np.ones(len(scene), dtype=bool)
+        new[1:] = (position[1:] != position[:-1]).any(axis=1) | (scene[1:] != scene[:-1])
+        rows = np.flatnonzero(new)
+        return cls(rows * each, scene[rows])
 
 
 def boxes_meet_ground(
@@ -11,6 +36,7 @@ def boxes_meet_ground(
     rotations: Float[np.ndarray, "N 3 3"],
     half_sizes: Float[np.ndarray, "N 3"],
     ground: Ground,
+    places: Places | None = None,
 ) -> Bool[np.ndarray, " N"]:
     """Tell which boxes touch any polygon.
 
@@ -23,28 +49,48 @@ def boxes_meet_ground(
         rotations: whose columns are the boxes' axes.
         half_sizes: along these axes [m].
         ground: the polygons.
+        places: where boxes are close together; all in one place, in scene 0, if None.
     """
     if not len(centres):
         return np.zeros(0, dtype=bool)
     reach = (np.abs(rotations) @ half_sizes[:, :, None])[:, :, 0]
     low, high = centres - reach, centres + reach
-    near = np.flatnonzero(
-        (ground.low <= high.max(axis=0)).all(axis=1) & (ground.high >= low.min(axis=0)).all(axis=1)
-    )
     touching = np.zeros(len(centres), dtype=bool)
-    overlap = np.ones((len(centres), len(near)), dtype=bool)
-    for axis in range(3):
-        overlap &= ground.low[near, axis] <= high[:, axis, None]
-        overlap &= ground.high[near, axis] >= low[:, axis, None]
-    box, polygon = np.nonzero(overlap)
+    zero = np.zeros(1, dtype=np.int64)
+    box, polygon = _near_pairs(low, high, ground, places or Places(zero, zero))
     if len(box):
-        polygon = near[polygon]
         meets = _meet(
             centres[box], rotations[box], half_sizes[box], ground.vertices[polygon],
             ground.normals[polygon],
         )  # fmt: skip
         touching[box[meets]] = True
     return touching
+
+
+def _near_pairs(
+    low: np.ndarray, high: np.ndarray, ground: Ground, places: Places
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (box, polygon) of all pairs whose bounding boxes overlap, box after box."""
+    least = np.minimum.reduceat(low, places.first)
+    most = np.maximum.reduceat(high, places.first)
+    near = ground.scene == places.scene[:, None]
+    for axis in range(3):
+        near &= ground.low[:, axis] <= most[:, axis, None]
+        near &= ground.high[:, axis] >= least[:, axis, None]
+    polygon = np.nonzero(near)[1]
+    polygons = near.sum(axis=1)
+    boxes = np.diff(places.first, append=len(low))
+    # Each box of a place with each polygon near it.
+    pairs = np.repeat(polygons, boxes)
+    box = np.repeat(np.arange(len(low)), pairs)
+    before = np.repeat(np.cumsum(polygons) - polygons, boxes)
+    within = np.arange(len(box)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    polygon = polygon[before[box] + within]
+    for axis in (2, 0, 1):
+        overlap = ground.low[polygon, axis] <= high[box, axis]
+        overlap &= ground.high[polygon, axis] >= low[box, axis]
+        box, polygon = box[overlap], polygon[overlap]
+    return box, polygon
 
 
 def _meet(

@@ -100,6 +100,7 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
     x, y = position[:, 0, None], position[:, 1, None]
     near = (ground.low[:count, 0] <= x + reach) & (ground.high[:count, 0] >= x - reach)
     near &= (ground.low[:count, 1] <= y + reach) & (ground.high[:count, 1] >= y - reach)
+    near &= ground.scene[:count] == aim.roots.scene[:, None]
     row, surface = np.nonzero(near)
     first = np.searchsorted(
         database.heights, ground.low[surface, 2] - position[row, 2] - gap

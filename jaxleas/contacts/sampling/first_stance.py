@@ -58,7 +58,7 @@ def _reference_stances(
         side = np.full(count, SIDES[limb])
         place = to_world(np.broadcast_to(reference_sole, (count, 3)), roots.yaw, side)
         place = place + roots.position
-        heights = ground.heights_at(place[:, :2])
+        heights = ground.heights_at(place[:, :2], roots.scene)
         below = np.where(heights <= roots.position[:, 2, None], heights, -np.inf)
         below = np.where(np.isnan(heights), -np.inf, below)
         surface = below.argmax(axis=1)

@@ -1,6 +1,6 @@
-"""A scene's polygons as arrays: what feet stand on and legs bump into."""
+"""The polygons of scenes as arrays: what feet stand on and legs bump into."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +14,11 @@ from jaxleas.types.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """Convex polygons, surfaces first.
+    """Convex polygons of one scene or several, surfaces first.
 
     Attributes:
         names: of the polygons.
+        scene: of each polygon: robots meet only those of the scene that they are in.
         walkable: how many of them, from the first, are surfaces.
         vertices: padded by repeating the last one [m].
         normals: unit.
@@ -29,6 +30,7 @@ class Ground:
     """
 
     names: tuple[str, ...]
+    scene: Int[np.ndarray, " P"]
     walkable: int
     vertices: Float[np.ndarray, "P W 3"]
     normals: Float[np.ndarray, "P 3"]
@@ -45,8 +47,15 @@ class Ground:
         distance = (self.inward[polygon] @ points[:, :, None])[:, :, 0]
         return np.all(distance >= self.inward_offsets[polygon], axis=1)
 
-    def heights_at(self, points_xy: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N S"]:
-        """Return the height of each surface over each point [m]; NaN beside it."""
+    def heights_at(
+        self, points_xy: Float[np.ndarray, "N 2"], scene: Int[np.ndarray, " N"]
+    ) -> Float[np.ndarray, "N S"]:
+        """Return the height of each surface over each point [m]; NaN beside it, or elsewhere.
+
+        Args:
+            points_xy: in the world [m].
+            scene: of each point.
+        """
         count = self.walkable
         normals, offsets = self.normals[:count], self.offsets[:count]
         heights = (offsets - points_xy @ normals[:, :2].T) / normals[:, 2]
@@ -54,24 +63,42 @@ class Ground:
             [np.broadcast_to(points_xy[:, None], (*heights.shape, 2)), heights[..., None]], axis=2
         )
         distance = np.einsum("swk,nsk->nsw", self.inward[:count], points)
-        return np.where((distance >= self.inward_offsets[:count]).all(axis=2), heights, np.nan)
+        above = (distance >= self.inward_offsets[:count]).all(axis=2)
+        above &= self.scene[:count] == scene[:, None]
+        return np.where(above, heights, np.nan)
 
 
-def ground_of(scene: Scene) -> Ground:
-    """Return a scene's surfaces and obstacles as arrays.
+def ground_of(scenes: Sequence[Scene]) -> Ground:
+    """Return the surfaces and obstacles of scenes as arrays.
 
     Raises:
-        InputError: the scene has no surface to stand on.
+        InputError: a scene has no surface to stand on.
     """
-    if not scene.surfaces:
+    if not all(scene.surfaces for scene in scenes):
         raise InputError("this scene has no surfaces: nothing can stand anywhere")
-    return ground_from(
-        (*scene.surfaces.items(), *scene.obstacles.items()), walkable=len(scene.surfaces)
+    surfaces = [each for scene in scenes for each in scene.surfaces.items()]
+    obstacles = [each for scene in scenes for each in scene.obstacles.items()]
+    owner = np.concatenate(
+        [
+            np.repeat(np.arange(len(scenes)), [len(scene.surfaces) for scene in scenes]),
+            np.repeat(np.arange(len(scenes)), [len(scene.obstacles) for scene in scenes]),
+        ]
     )
+    return ground_from([*surfaces, *obstacles], len(surfaces), owner)
 
 
-def ground_from(polygons: Iterable[tuple[str, np.ndarray]], walkable: int) -> Ground:
-    """Return named polygons, the first `walkable` of them surfaces, as arrays."""
+def ground_from(
+    polygons: Iterable[tuple[str, np.ndarray]],
+    walkable: int,
+    scene: Int[np.ndarray, " P"] | None = None,
+) -> Ground:
+    """Return named polygons as arrays.
+
+    Args:
+        polygons: names and vertices.
+        walkable: how many, from the first, are surfaces.
+        scene: of each; all of scene 0 if None.
+    """
     named = list(polygons)
     vertices = pack_polygons([polygon for _, polygon in named])
     areas = np.array([polygon_area_vector(np.asarray(polygon)) for _, polygon in named])
@@ -82,6 +109,7 @@ def ground_from(polygons: Iterable[tuple[str, np.ndarray]], walkable: int) -> Gr
     inward = np.where(length > 1e-9, inward / np.maximum(length, 1e-9), 0.0)
     return Ground(
         names=tuple(name for name, _ in named),
+        scene=np.zeros(len(named), dtype=np.int64) if scene is None else scene,
         walkable=walkable,
         vertices=vertices,
         normals=normals,

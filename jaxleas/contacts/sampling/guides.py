@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.contacts.sampling.box_collision import boxes_meet_ground
+from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
 from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
 from jaxleas.contacts.sampling.world import World
@@ -56,20 +56,19 @@ class KeptGuides:
         )
 
 
-def keep_configurations(world: World, guide_paths: Sequence[GuidePath]) -> KeptGuides:
+def keep_configurations(
+    world: World, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
+) -> KeptGuides:
     """Keep every N-th configuration, and the last, and judge the trunk at each.
 
     Args:
         world: robot, scene, settings.
-        guide_paths: at least one.
-
-    Raises:
-        InputError: a path is empty or holds numbers that are not finite.
+        guide_paths: at least one, each of them usable.
+        scene_index: which of the ground's scenes each is in.
     """
     settings = world.settings
     kept = []
-    for number, path in enumerate(guide_paths):
-        require_usable(path, number)
+    for path in guide_paths:
         index = np.arange(0, len(path), settings.keep_every)
         kept.append(index if index[-1] == len(path) - 1 else np.append(index, len(path) - 1))
     length = np.array([len(index) for index in kept])
@@ -88,12 +87,13 @@ def keep_configurations(world: World, guide_paths: Sequence[GuidePath]) -> KeptG
         ahead = places[np.minimum(rows + 1, len(path) - 1)] - places[np.maximum(rows - 1, 0)]
         speed = np.linalg.norm(ahead, axis=1, keepdims=True)
         direction.append(np.where(speed > 1e-6, ahead / np.maximum(speed, 1e-6), 0.0))
-    roots = Roots(np.concatenate(position), np.concatenate(yaw))
+    scene = np.repeat(np.asarray(scene_index, dtype=np.int64), widest)
+    roots = Roots(np.concatenate(position), np.concatenate(yaw), scene)
     return KeptGuides(
         index=index,
         length=length,
         roots=roots,
-        ahead=Roots(np.concatenate(later), np.concatenate(later_yaw)),
+        ahead=Roots(np.concatenate(later), np.concatenate(later_yaw), scene),
         direction=np.concatenate(direction),
         trunk_free=trunk_is_free(world, roots).reshape(index.shape),
         reference_sole=leg_posture(world.legs, world.legs.reference).sole,
@@ -105,12 +105,13 @@ def trunk_is_free(world: World, roots: Roots) -> Bool[np.ndarray, " N"]:
     free = np.ones(len(roots), dtype=bool)
     ones = np.ones(len(roots))
     turn = rotations_to_world(np.broadcast_to(np.eye(3), (len(roots), 3, 3)), roots.yaw, ones)
+    places = Places.of(roots.position, roots.scene, 1)
     for box in world.robot.trunk:
         low, high = np.asarray(box.low), np.asarray(box.high)
         middle = np.broadcast_to(0.5 * (low + high), (len(roots), 3))
         centre = to_world(middle, roots.yaw, ones) + roots.position
         half = np.broadcast_to(0.5 * (high - low), (len(roots), 3))
-        free &= ~boxes_meet_ground(centre, turn, half, world.ground)
+        free &= ~boxes_meet_ground(centre, turn, half, world.ground, places)
     return free
 
 

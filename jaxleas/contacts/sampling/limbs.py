@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.contacts.sampling.box_collision import boxes_meet_ground
+from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.ground import Ground
 from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
 from jaxleas.robots.legs import MIRRORED_JOINTS, LegModel
@@ -22,14 +22,16 @@ class Roots:
     Attributes:
         position: in the world [m].
         yaw: heading [rad].
+        scene: which of the ground's scenes each is in.
     """
 
     position: Float[np.ndarray, "N 3"]
     yaw: Float[np.ndarray, " N"]
+    scene: Int[np.ndarray, " N"]
 
     def __getitem__(self, rows) -> "Roots":
         """Return some of the poses."""
-        return Roots(self.position[rows], self.yaw[rows])
+        return Roots(self.position[rows], self.yaw[rows], self.scene[rows])
 
     def __len__(self) -> int:
         """Return the number of poses."""
@@ -41,6 +43,7 @@ class PlacedLegs:
     """Legs that reach for a foothold, one a row, in the world.
 
     Attributes:
+        roots: one a leg.
         side: +1 left, -1 right.
         angles: of the joints, in the left leg's convention [rad].
         reachable: whether the foothold is in reach within the joint limits.
@@ -49,6 +52,7 @@ class PlacedLegs:
         sole: position of the sole's origin [m].
     """
 
+    roots: Roots
     side: Float[np.ndarray, " N"]
     angles: Float[np.ndarray, "N 6"]
     reachable: Bool[np.ndarray, " N"]
@@ -59,6 +63,7 @@ class PlacedLegs:
     def __getitem__(self, rows) -> "PlacedLegs":
         """Return some of the legs."""
         return PlacedLegs(
+            self.roots[rows],
             self.side[rows],
             self.angles[rows],
             self.reachable[rows],
@@ -126,6 +131,7 @@ def place_legs(
     posture = leg_posture(legs, angles)
     turn = _left_root_frames(roots.yaw, side)[:, None]
     return PlacedLegs(
+        roots,
         side,
         angles,
         reachable,
@@ -170,6 +176,7 @@ def legs_collide(
         frames.reshape(-1, 3, 3),
         np.broadcast_to(half, centres.shape).reshape(-1, 3),
         ground,
+        Places.of(placed.roots.position[rows], placed.roots.scene[rows], count),
     )
     return np.any(hits.reshape(len(rows), count), axis=1)
 

@@ -13,7 +13,7 @@ import numpy as np
 from jaxleas.contacts.sampling.create import Created, create_contacts, put
 from jaxleas.contacts.sampling.diary import Diary
 from jaxleas.contacts.sampling.first_stance import first_stances
-from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations
+from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations, require_usable
 from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.plan import SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
@@ -48,11 +48,45 @@ def plan_many(
 
     Every plan is the one that `plan_contacts` makes.
     """
-    world = talos_world(scene, settings or SamplingSettings())
-    plans: list[SamplingPlan] = []
-    for first in range(0, len(guide_paths), _ABREAST):
-        plans += _Walk(world, guide_paths[first : first + _ABREAST]).plans()
-    return plans
+    return plan_over([scene], guide_paths, [0] * len(guide_paths), settings)
+
+
+def plan_over(
+    scenes: Sequence[Scene],
+    guide_paths: Sequence[GuidePath],
+    scene_index: Sequence[int],
+    settings: SamplingSettings | None = None,
+) -> list[SamplingPlan]:
+    """Plan Talos's contacts along guide paths, each over one of several scenes, in one process.
+
+    Every plan is the one that `plan_contacts` makes; paths over different scenes, too, are walked
+    abreast.
+
+    Args:
+        scenes: surfaces to stand on, obstacles to stay clear of.
+        guide_paths: to be followed exactly.
+        scene_index: of each guide path's scene.
+        settings: of the planner; the published ones by default.
+
+    Returns:
+        Plans in the order of the guide paths.
+
+    Raises:
+        InputError: a guide path or a scene cannot be used.
+    """
+    chosen = settings or SamplingSettings()
+    for number, path in enumerate(guide_paths):
+        require_usable(path, number)
+    index = np.asarray(scene_index, dtype=np.int64)
+    order = np.argsort(index, kind="stable")
+    plans: dict[int, SamplingPlan] = {}
+    for first in range(0, len(order), _ABREAST):
+        some = order[first : first + _ABREAST]
+        used, local = np.unique(index[some], return_inverse=True)
+        world = talos_world([scenes[each] for each in used.tolist()], chosen)
+        walk = _Walk(world, [guide_paths[each] for each in some.tolist()], local.tolist())
+        plans.update(zip(some.tolist(), walk.plans(), strict=True))
+    return [plans[number] for number in range(len(guide_paths))]
 
 
 class _Walk:
@@ -61,10 +95,12 @@ class _Walk:
     `at` is each path's configuration reached, `failures` those in a row, `reason` what stopped it.
     """
 
-    def __init__(self, world: World, guide_paths: Sequence[GuidePath]) -> None:
+    def __init__(
+        self, world: World, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
+    ) -> None:
         self.begun = perf_counter()
         self.world = world
-        self.guides: KeptGuides = keep_configurations(world, guide_paths)
+        self.guides: KeptGuides = keep_configurations(world, guide_paths, scene_index)
         count = len(guide_paths)
         self.at = np.zeros(count, dtype=np.int64)
         self.failures = np.zeros(count, dtype=np.int64)

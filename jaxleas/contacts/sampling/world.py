@@ -1,5 +1,6 @@
 """All that a plan is made in and with: robot, data base, scene, settings."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,13 +19,13 @@ from jaxleas.terrain.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """Robot, data base, scene and settings.
+    """Robot, data base, scenes and settings.
 
     Attributes:
         robot: trunk boxes, friction, size of the soles.
         legs: their kinematics and masses.
         database: leg configurations.
-        ground: the scene's polygons.
+        ground: the polygons of the scenes.
         settings: of the planner.
     """
 
@@ -63,12 +64,12 @@ def _contact_points(stances: Stances) -> tuple[np.ndarray, np.ndarray]:
     return stances.corners.reshape(count, -1, 3), normals
 
 
-def talos_world(scene: Scene, settings: SamplingSettings) -> World:
-    """Return Talos in a scene."""
+def talos_world(scenes: Sequence[Scene], settings: SamplingSettings) -> World:
+    """Return Talos in scenes."""
     return World(
         load_talos(),
         load_talos_legs(),
         talos_database(settings.samples, settings.seed),
-        ground_of(scene),
+        ground_of(scenes),
         settings,
     )

@@ -3,7 +3,7 @@ import pytest
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
-from jaxleas.contacts.sampling.box_collision import boxes_meet_ground
+from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import near_candidates
 from jaxleas.contacts.sampling.database import align, make_database, sole_jacobian, talos_database
 from jaxleas.contacts.sampling.ground import ground_from
@@ -43,6 +43,31 @@ def test_boxes_touch_polygons_exactly_when_a_linear_program_says_so(random_polyg
     expected = [
         any(boxes_touch_by_linear_program(c, r, h, p) for p in random_polygons)
         for c, r, h in zip(centres, rotations, half, strict=True)
+    ]
+    np.testing.assert_array_equal(found, expected)
+    assert 0.1 < found.mean() < 0.9
+
+
+def test_boxes_touch_the_polygons_of_their_own_scene_alone(random_polygons):
+    rng = np.random.default_rng(2)
+    count, scene = 60, np.array([1, 0, 1])
+    ground = ground_from([(str(i), p) for i, p in enumerate(random_polygons)], 1, scene)
+    centres = rng.uniform(-0.9, 0.9, (count, 3))
+    rotations = Rotation.random(count, random_state=3).as_matrix()
+    half = rng.uniform(0.02, 0.4, (count, 3))
+    # Runs of two rows at one position, each with two boxes; the scenes alternate.
+    position = np.repeat(rng.uniform(-0.9, 0.9, (15, 3)), 2, axis=0)
+    mine = np.repeat(np.arange(15) % 2, 2)
+    places = Places.of(position, mine, 2)
+    np.testing.assert_array_equal(places.first, np.arange(0, 60, 4))
+    found = boxes_meet_ground(centres, rotations, half, ground, places)
+    expected = [
+        any(
+            boxes_touch_by_linear_program(centres[n], rotations[n], half[n], polygon)
+            for polygon, owner in zip(random_polygons, scene, strict=True)
+            if owner == mine[n // 2]
+        )
+        for n in range(count)
     ]
     np.testing.assert_array_equal(found, expected)
     assert 0.1 < found.mean() < 0.9
@@ -103,8 +128,8 @@ def test_align_turns_the_normal_by_the_smallest_angle():
 
 def test_candidates_are_all_samples_near_a_surface_best_first():
     settings = SamplingSettings(samples=4000, stages=(100_000,))
-    world = talos_world(stairs(), settings)
-    guides = keep_configurations(world, [straight(2.0, climbing=True)])
+    world = talos_world([stairs()], settings)
+    guides = keep_configurations(world, [straight(2.0, climbing=True)], [0])
     guide, at, limb = np.array([0, 0]), np.array([8, 12]), np.array([0, 1])
     aim = guides.aim(guide, at, limb)
     found = near_candidates(world, aim)

@@ -3,12 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many
+from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many, plan_over
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
 from jaxleas.dynamics import equilibrium_robustness
 from jaxleas.robots import load_talos
 from jaxleas.robots.leg_kinematics import leg_angles
 from jaxleas.robots.legs import load_talos_legs
+from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight, wall
@@ -100,6 +102,24 @@ def test_many_together_are_planned_like_each_alone():
         assert plan.how == alone.how
         np.testing.assert_allclose(plan.soles, alone.soles, atol=1e-12)
         np.testing.assert_allclose(plan.robustness, alone.robustness, rtol=1e-6)
+
+
+def test_over_many_scenes_each_is_planned_like_alone():
+    """Scenes that overlap in space, and one so large that most of it is out of reach."""
+    arena = generate_arena(GeneratorConfig(rows=2, columns=8), 3).scene
+    shift = np.array([40.0, 0.0, 0.0])
+    far = {f"far_{name}": polygon + shift for name, polygon in arena.surfaces.items()}
+    boxes = {f"far_{name}": polygon + shift for name, polygon in arena.obstacles.items()}
+    scenes = [wall(), stairs(), Scene({**far, **flat().surfaces}, boxes), hole()]
+    paths = [straight(1.5 + 0.1 * n, y=0.05 * n, climbing=n % 4 == 1) for n in range(8)]
+    index = [n % 4 for n in range(8)]
+    assert any("obstacle" in name for name in boxes)
+    plans = plan_over(scenes, paths, index)
+    for path, number, plan in zip(paths, index, plans, strict=True):
+        alone = plan_contacts(scenes[number], path)
+        assert (plan.how, plan.surfaces, plan.reason) == (alone.how, alone.surfaces, alone.reason)
+        np.testing.assert_allclose(plan.soles, alone.soles, atol=1e-12)
+    assert {plan.success for plan in plans} == {True, False}
 
 
 def test_the_same_walk_elsewhere():
