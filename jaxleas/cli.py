@@ -35,6 +35,11 @@ COMMANDS = {
     "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
     "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
     "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
+    "view": (
+        "jaxleas.viewer.commands",
+        "view",
+        "drive policies and play back paths in the browser",
+    ),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 
