@@ -10,8 +10,8 @@ from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.guide.files import read_guide_paths
+from jaxleas.guide.standing import Pose
 from jaxleas.types import GuidePath, InputError
-from jaxleas.viewer.walker import Pose
 
 SECONDS_A_PHASE = 1.0  # a contact plan has no times of its own
 

@@ -170,9 +170,9 @@ def _drive(
 ) -> "Drive":
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.loading import load_policy
+    from jaxleas.guide.standing import choose_start, require_start
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.viewer.drive import Drive
-    from jaxleas.viewer.standing import choose_start, require_start
     from jaxleas.viewer.walker import Walker
 
     loaded = [load_policy(each) for each in policies]

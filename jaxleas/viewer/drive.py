@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from jaxleas.guide.standing import Pose
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.viewer.figure import GOAL, ROBOTS, Figure
 from jaxleas.viewer.terrain_mesh import meet
-from jaxleas.viewer.walker import Pose, Walker
+from jaxleas.viewer.walker import Walker
 
 if TYPE_CHECKING:
     from viser import ViserServer

@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull
 
+from jaxleas.guide.standing import Pose
 from jaxleas.robots import Robot
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.scene import Scene
 from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_map, mesh_of_polygons
-from jaxleas.viewer.walker import Pose
 
 if TYPE_CHECKING:
     from viser import ViserServer

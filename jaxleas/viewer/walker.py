@@ -1,7 +1,7 @@
 """One robot that a policy walks, a time step at a time, for as long as somebody watches."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -11,23 +11,12 @@ from jaxtyping import Float
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide.leas import leas
 from jaxleas.guide.onnx_policy import OnnxPolicy
+from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.types import RootMotion
 
 State = Literal["waiting", "walking", "arrived", "invalid"]
-
-
-class Pose(NamedTuple):
-    """Where an upright root is.
-
-    Attributes:
-        position: in the world [m].
-        yaw: heading [rad].
-    """
-
-    position: Float[np.ndarray, " 3"]
-    yaw: float
 
 
 @dataclass

@@ -1,6 +1,7 @@
 """Where a robot can stand: a place to begin, and the nearest one to a place where it cannot."""
 
 from functools import partial
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -13,11 +14,22 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError, RootMotion
-from jaxleas.viewer.walker import Pose
 
 MOST_PLACES = 5_000
 SPACING = 0.25  # between places that are tried [m]; wider on maps that are larger
 ROOM = 5  # places along each side of the square of valid ones in whose middle to begin
+
+
+class Pose(NamedTuple):
+    """Where an upright root is.
+
+    Attributes:
+        position: in the world [m].
+        yaw: heading [rad].
+    """
+
+    position: Float[np.ndarray, " 3"]
+    yaw: float
 
 
 def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
