@@ -1,7 +1,8 @@
 """The function behind `jaxleas view`."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -74,11 +75,13 @@ def view(
     """
     from jaxleas.terrain.importers import import_terrain
     from jaxleas.terrain.scene import read_scene
+    from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.viewer.figure import draw_terrain
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
 
     _require_a_task(policies, goal, guide, plan, problem, record)
+    keep_compiled_programs()
     clips = _clips(guide, plan, problem)
     ground = import_terrain(
         terrain,
@@ -90,12 +93,11 @@ def view(
         zero_is_void=zero_is_void,
     )
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
-    with serving(host, 0 if record else port) as server:
+    with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
-        if record is None:
-            _announce(server, browser)
         recorder = Recorder(server)
         if record is None:
+            _announce(server, browser)
             recorder.add_panel()
         players: list[Player] = []
         if clips:
@@ -104,10 +106,21 @@ def view(
             waiting = server.gui.add_markdown("The policies are being compiled ...")
             players.append(_drive(server, ground, policies, start, goal))
             waiting.remove()
-        if record is not None:
-            _write_recording(record, recorder, players)
-        else:
+        if record is None:
             _show(players, recorder)
+        else:
+            _write_recording(record, recorder, players)
+
+
+@contextmanager
+def _until_interrupted(is_the_end: bool) -> Iterator[None]:
+    """Take Ctrl-C for the end of a look around, but not for the end of a recording."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not is_the_end:
+            raise
+        print()  # what the terminal made of Ctrl-C stands on a line of its own
 
 
 def _require_a_task(
@@ -200,16 +213,13 @@ def _name(path: Path) -> str:
 def _show(players: list[Player], recorder: "Recorder") -> None:
     """Show frames until somebody presses Ctrl-C."""
     before = time.monotonic()
-    try:
-        while True:
-            now = time.monotonic()
-            for player in players:
-                player.frame(now - before)
-            recorder.frame(now - before)
-            before = now
-            time.sleep(max(0.0, FRAME - (time.monotonic() - now)))
-    except KeyboardInterrupt:
-        print()  # what the terminal made of Ctrl-C stands on a line of its own
+    while True:
+        now = time.monotonic()
+        for player in players:
+            player.frame(now - before)
+        recorder.frame(now - before)
+        before = now
+        time.sleep(max(0.0, FRAME - (time.monotonic() - now)))
 
 
 def _write_recording(path: Path, recorder: "Recorder", players: list[Player]) -> None:
