@@ -42,6 +42,11 @@ COMMANDS = {
         "distill",
         "train a policy that knows its planner",
     ),
+    "view": (
+        "jaxleas.viewer.commands",
+        "view",
+        "drive policies and play back paths in the browser",
+    ),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 

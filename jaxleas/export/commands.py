@@ -8,13 +8,45 @@ from jaxleas.types import InputError
 RECORDING_KEY = 20_221_128  # of the walks that are recorded: the same ones for the same policy
 
 
-def export(run: Path, *, out: Path | None = None) -> None:
+def export(
+    run: Path,
+    *,
+    out: Path | None = None,
+    page: Path | None = None,
+    terrain: Path | None = None,
+    start: tuple[float, float, float] | None = None,
+    runtime: Path | None = None,
+) -> None:
     """Export the best policy of a run as ONNX and StableHLO, compared with JAX first.
 
     Args:
-        run: the run folder.
+        run: the run folder; with --page an .onnx does, too, and is exported no further.
         out: folder for policy.onnx, policy.stablehlo and export.json; by default the run folder.
+        page: folder for a page on which the policy walks, static files for any web host.
+        terrain: of the page: .npz height map, .json scene, .stl or .obj mesh.
+        start: of the page: x, y [m] and heading [deg]; by default a place with room around it.
+        runtime: folder dist of the npm package onnxruntime-web; by default npm fetches it once.
     """
+    if page is None or terrain is None:
+        if page is not None or terrain is not None or start is not None or runtime is not None:
+            raise InputError("a page needs both --page DIR and --terrain FILE; nothing was written")
+        _export_run(Path(run), out)
+        return
+    from jaxleas.export.web_page import write_page
+    from jaxleas.guide.onnx_policy import read_onnx_policy
+    from jaxleas.terrain.importers import import_terrain
+
+    ground = import_terrain(terrain)
+    file = Path(run)
+    if file.suffix != ".onnx":
+        file = _export_run(file, out) / "policy.onnx"
+    config = read_onnx_policy(file).config
+    write_page(page, file.read_bytes(), config, ground, start, runtime)
+    print(f"{page}: serve it from anywhere, as with  python -m http.server --directory {page}")
+
+
+def _export_run(folder: Path, out: Path | None) -> Path:
+    """Export a run; return the folder of the artifacts."""
     import jax
 
     from jaxleas.envs.steering.env import SteeringEnv
@@ -26,9 +58,8 @@ def export(run: Path, *, out: Path | None = None) -> None:
     from jaxleas.training.policy import read_policy
     from jaxleas.training.worlds import held_out_world
 
-    folder = Path(run)
     if folder.is_file():
-        raise InputError(f"{run} is a file; the run folder, as train.py writes it, would do")
+        raise InputError(f"{folder} is a file; the run folder, as train.py writes it, would do")
     policy = read_policy(policy_file(folder))
     config = load_config(RunConfig, folder / "config.yaml")
     env = SteeringEnv(policy.config)
@@ -42,6 +73,7 @@ def export(run: Path, *, out: Path | None = None) -> None:
         f"{target}/policy.onnx and policy.stablehlo: within {parity['onnxruntime']:.1e} and"
         f" {parity['stablehlo']:.1e} of JAX on {parity['observations']} observations"
     )
+    return target
 
 
 def success_of(run: Path) -> list[dict[str, Any]] | None:

@@ -1,0 +1,82 @@
+// The steering task in JavaScript: terrain, observation, motion; it mirrors jaxleas/envs/steering.
+// Metres, seconds, radians; the root's x points ahead, y left; a `task` is page.json.
+
+const NO_GROUND = -1e4;
+
+/** A height map: one height a cell, row = y, column = x; NaN = no ground. */
+export class Terrain {
+  constructor({ rows, columns, resolution, origin }, heights) {
+    Object.assign(this, { rows, columns, resolution, origin, heights });
+  }
+
+  /** Height [m] of the cell that holds a point; far below everything where there is no ground. */
+  heightAt(x, y) {
+    const column = Math.floor((x - this.origin[0]) / this.resolution + 0.5);
+    const row = Math.floor((y - this.origin[1]) / this.resolution + 0.5);
+    if (row < 0 || row >= this.rows || column < 0 || column >= this.columns) return NO_GROUND;
+    const height = this.heights[row * this.columns + column];
+    return Number.isNaN(height) ? NO_GROUND : height;
+  }
+}
+
+/** The root at rest at a place, at walking height. */
+export function stand(task, terrain, [x, y], yaw = 0) {
+  const position = [x, y, terrain.heightAt(x, y) + task.walking_height];
+  return { position, velocity: [0, 0, 0], yaw };
+}
+
+/** The observation's grid points in the world, in its order: from the rear, from right to left. */
+export function pointsSeen(task, { position, yaw }) {
+  const [cosine, sine] = [Math.cos(yaw), Math.sin(yaw)];
+  return task.observation.rows.flatMap((ahead) =>
+    task.observation.columns.map((left) => [
+      position[0] + cosine * ahead - sine * left,
+      position[1] + sine * ahead + cosine * left,
+    ]),
+  );
+}
+
+/** What the policy sees: velocity in the root frame, angle to the goal, heights (T eq. 3.1). */
+export function observe(task, terrain, motion, goal) {
+  const { position, velocity, yaw } = motion;
+  const [low, high] = task.observation.height_clip;
+  const heights = pointsSeen(task, motion).map(([x, y]) =>
+    Math.min(high, Math.max(low, terrain.heightAt(x, y) - position[2])),
+  );
+  const bearing = Math.atan2(goal[1] - position[1], goal[0] - position[0]);
+  return Float32Array.from([...turned(velocity, -yaw), wrapped(bearing - yaw), ...heights]);
+}
+
+/** The root one time step later, under an acceleration in the root frame and a turn rate (T eq. 3.3). */
+export function integrate(task, { position, velocity, yaw }, command) {
+  const { time_step: step, max_speed: limit } = task.command;
+  const acceleration = turned(command.slice(0, 3), yaw);
+  const faster = velocity.map((each, axis) => each + acceleration[axis] * step);
+  const excess = Math.max(1, Math.hypot(...faster) / limit);
+  return {
+    position: position.map((each, axis) => each + velocity[axis] * step),
+    velocity: faster.map((each) => each / excess),
+    yaw: wrapped(yaw + command[3] * step),
+  };
+}
+
+/** One time step of a policy: an onnxruntime session; `ort` is its library. */
+export async function step(ort, session, task, terrain, motion, goal) {
+  const observation = observe(task, terrain, motion, goal);
+  const input = new ort.Tensor("float32", observation, [1, observation.length]);
+  const { command } = await session.run({ observation: input });
+  return integrate(task, motion, Array.from(command.data));
+}
+
+export function distance([x, y], goal) {
+  return Math.hypot(goal[0] - x, goal[1] - y);
+}
+
+export function wrapped(angle) {
+  return angle - 2 * Math.PI * Math.floor((angle + Math.PI) / (2 * Math.PI));
+}
+
+function turned([x, y, z], yaw) {
+  const [cosine, sine] = [Math.cos(yaw), Math.sin(yaw)];
+  return [x * cosine - y * sine, x * sine + y * cosine, z];
+}

@@ -1,0 +1,238 @@
+"""The function behind `jaxleas view`."""
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, Protocol
+
+from jaxleas.types.errors import InputError
+
+if TYPE_CHECKING:
+    from viser import ViserServer
+
+    from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.viewer.clips import Clip
+    from jaxleas.viewer.drive import Drive
+    from jaxleas.viewer.recording import Recorder
+
+FRAME = 1.0 / 30.0  # [s]
+
+
+class Player(Protocol):
+    """What moves on the page."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether it has more to show by itself."""
+        ...
+
+    def frame(self, seconds: float) -> None:
+        """Let time pass."""
+        ...
+
+
+def view(
+    terrain: Path,
+    *,
+    policies: Sequence[Path] | None = None,
+    start: tuple[float, float, float] | None = None,
+    goal: tuple[float, float] | None = None,
+    guide: Path | None = None,
+    plan: Path | None = None,
+    problem: Path | None = None,
+    record: Path | None = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    browser: bool = True,
+    resolution: float | None = None,
+    up: Literal["x", "y", "z"] = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> None:
+    """Show a terrain in the browser; drive policies on it, play back paths and plans.
+
+    Args:
+        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        policies: run folders, policy.npz or .onnx files: a robot each, side by side.
+        start: where the robots begin: x, y [m] and heading [deg]; by default a place with room.
+        goal: where they are sent at first: x, y [m].
+        guide: guide paths to play back, .npz.
+        plan: a contact plan to play back, .json; with --problem.
+        problem: the contact problem that the plan answers, .json.
+        record: write the walk to --goal, or what is played back, as one HTML file, and end.
+        host: address to listen on; only this machine reaches the default.
+        port: to listen on; 0 for any that is free.
+        browser: open a window, where there is a display.
+        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means no ground.
+    """
+    from jaxleas.terrain.importers import import_terrain
+    from jaxleas.terrain.scene import read_scene
+    from jaxleas.training.compilation import keep_compiled_programs
+    from jaxleas.viewer.figure import draw_terrain
+    from jaxleas.viewer.recording import Recorder
+    from jaxleas.viewer.server import serving
+
+    _require_a_task(policies, goal, guide, plan, problem, record)
+    keep_compiled_programs()
+    clips = _clips(guide, plan, problem)
+    ground = import_terrain(
+        terrain,
+        resolution=resolution,
+        up=up,
+        scale=scale,
+        z_min=z_min,
+        z_max=z_max,
+        zero_is_void=zero_is_void,
+    )
+    scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
+    with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
+        draw_terrain(server, ground, scene)
+        recorder = Recorder(server)
+        if record is None:
+            _announce(server, browser)
+            recorder.add_panel()
+        players: list[Player] = []
+        if clips:
+            players.append(_play_back(server, clips, playing=record is not None))
+        if policies:
+            waiting = server.gui.add_markdown("The policies are being compiled ...")
+            players.append(_drive(server, ground, policies, start, goal))
+            waiting.remove()
+        if record is None:
+            _show(players, recorder)
+        else:
+            _write_recording(record, recorder, players)
+
+
+@contextmanager
+def _until_interrupted(is_the_end: bool) -> Iterator[None]:
+    """Take Ctrl-C for the end of a look around, but not for the end of a recording."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not is_the_end:
+            raise
+        print()  # what the terminal made of Ctrl-C stands on a line of its own
+
+
+def _require_a_task(
+    policies: Sequence[Path] | None,
+    goal: tuple[float, float] | None,
+    guide: Path | None,
+    plan: Path | None,
+    problem: Path | None,
+    record: Path | None,
+) -> None:
+    if (plan is None) != (problem is None):
+        raise InputError("--plan and --problem belong together: a plan names no feet by itself")
+    if record is None:
+        return
+    if record.suffix != ".html":
+        raise InputError(f"--record {record}: recordings are written as .html")
+    if policies and goal is None:
+        raise InputError("--record with --policies needs --goal X Y: where the robots walk to")
+    if not (policies or guide or plan):
+        raise InputError("--record needs something that moves: --policies, --guide or --plan")
+
+
+def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list[Clip]":
+    from jaxleas.viewer.clips import read_guide_clips, read_plan_clip
+
+    clips = read_guide_clips(guide) if guide is not None else []
+    if plan is not None and problem is not None:
+        clips.append(read_plan_clip(plan, problem))
+    return clips
+
+
+def _announce(server: "ViserServer", browser: bool) -> None:
+    from jaxleas.viewer.server import address_of, open_browser
+
+    address, port = address_of(server), server.get_port()
+    opened = browser and open_browser(address)
+    print(
+        f"{address} {'is open in your browser' if opened else 'shows it in any browser'}; from"
+        f" elsewhere forward the port (ssh -L {port}:127.0.0.1:{port} THIS_MACHINE); Ctrl-C ends",
+        flush=True,
+    )
+
+
+def _play_back(server: "ViserServer", clips: "list[Clip]", playing: bool) -> Player:
+    from jaxleas.robots import load_robot
+    from jaxleas.viewer.playback import Playback
+
+    playback = Playback(server, load_robot("talos"), clips)
+    if playing:
+        playback.play()
+    return playback
+
+
+def _drive(
+    server: "ViserServer",
+    terrain: "HeightMap",
+    policies: Sequence[Path],
+    start: tuple[float, float, float] | None,
+    goal: tuple[float, float] | None,
+) -> "Drive":
+    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.guide.loading import load_policy
+    from jaxleas.guide.standing import choose_start, require_start
+    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.viewer.drive import Drive
+    from jaxleas.viewer.walker import Walker
+
+    loaded = [load_policy(each) for each in policies]
+    envs = [SteeringEnv(each.config) for each in loaded]
+    place = (
+        choose_start(envs[0], terrain) if start is None else require_start(envs[0], terrain, start)
+    )
+    atlas = make_atlas([terrain])
+    walkers = [
+        Walker(_name(path), env, policy, atlas)
+        for path, env, policy in zip(policies, envs, loaded, strict=True)
+    ]
+    drive = Drive(server, terrain, walkers, place)
+    if goal is not None:
+        drive.send(goal)
+    return drive
+
+
+def _name(path: Path) -> str:
+    """Return what a policy is called: its run folder, whichever file in it was given."""
+    whole = path.resolve()
+    return whole.parent.name if whole.stem == "policy" else whole.stem
+
+
+def _show(players: list[Player], recorder: "Recorder") -> None:
+    """Show frames until somebody presses Ctrl-C."""
+    before = time.monotonic()
+    while True:
+        now = time.monotonic()
+        for player in players:
+            player.frame(now - before)
+        recorder.frame(now - before)
+        before = now
+        time.sleep(max(0.0, FRAME - (time.monotonic() - now)))
+
+
+def _write_recording(path: Path, recorder: "Recorder", players: list[Player]) -> None:
+    """Play everything once, as fast as it goes, and write it."""
+    from jaxleas.files import write_text
+    from jaxleas.viewer.recording import MOST_SECONDS
+
+    recorder.start()
+    seconds = 0.0
+    while any(player.busy for player in players) and seconds < MOST_SECONDS:
+        for player in players:
+            player.frame(FRAME)
+        recorder.frame(FRAME)
+        seconds += FRAME
+    write_text(path, recorder.finish())
+    print(f"{path}: {seconds:.0f} s, opens in any browser")

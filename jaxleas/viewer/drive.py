@@ -1,0 +1,242 @@
+"""Driving: people send robots to goals, or steer them, and the policies walk them there."""
+
+import html
+from collections.abc import Callable, Sequence
+from importlib import resources
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jaxleas.guide.standing import Pose
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.viewer.figure import GOAL, ROBOTS, Figure
+from jaxleas.viewer.terrain_mesh import meet
+from jaxleas.viewer.walker import Walker
+
+if TYPE_CHECKING:
+    from viser import ViserServer
+
+LEAD = 1.0
+"""A robot that is steered is sent this far ahead, again and again [m]."""
+TURN = np.radians(15.0)
+"""A press of a key turns the course by this."""
+MOST_STEPS_A_FRAME = 10
+"""Beyond this the page would stand still while the robots run."""
+TRAIL_EVERY, TRAIL_LENGTH = 3, 3000  # steps between two drawings; configurations that are kept
+WORDS = {
+    "waiting": "stands, waiting for a goal",
+    "walking": "walks",
+    "arrived": "has arrived",
+    "invalid": "stands invalid: reset it",
+}
+
+
+class Rider:
+    """A walker and its figure on the page."""
+
+    def __init__(self, walker: Walker, figure: Figure, start: Pose) -> None:
+        self.walker, self.figure, self._start = walker, figure, start
+        self.time_step = walker.env.config.limits.time_step
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to the start."""
+        self.walker.reset(self._start)
+        self._elapsed = 0.0
+        self._trail = [self._start.position]
+        self._draw()
+        self.figure.show_trail(np.array(self._trail))
+
+    def advance(self, seconds: float, steer: Callable[[Walker], None]) -> None:
+        """Let time pass; the figure moves evenly between configurations.
+
+        Args:
+            seconds: on the robot's clock.
+            steer: called before each step.
+        """
+        if self.walker.state != "walking":
+            return
+        self._elapsed = min(self._elapsed + seconds, MOST_STEPS_A_FRAME * self.time_step)
+        while self._elapsed >= self.time_step and self.walker.state == "walking":
+            self._elapsed -= self.time_step
+            steer(self.walker)
+            self.walker.step()
+            self._trail = [*self._trail[-TRAIL_LENGTH:], self.walker.pose.position]
+            if self.walker.steps % TRAIL_EVERY == 0 or self.walker.state != "walking":
+                self.figure.show_trail(np.array(self._trail))
+            self._perceive()
+        self._draw()
+
+    def _draw(self) -> None:
+        walking = self.walker.state == "walking" and self.walker.steps > 0
+        self.figure.place(
+            self.walker.between(self._elapsed / self.time_step) if walking else self.walker.pose
+        )
+        if not walking:
+            self._perceive()
+
+    def _perceive(self) -> None:
+        low, high = self.walker.env.height_range
+        share = (self.walker.sight.heights - low) / (high - low)
+        self.figure.show_seen(self.walker.points_seen(), np.clip(share, 0.0, 1.0))
+        self.figure.mark(self.walker.state != "invalid")
+
+
+class Drive:
+    """The panel for driving, and what happens in a frame.
+
+    What people do arrives on the server's threads; it waits in a queue for the next frame, so that
+    robots are moved by one thread alone.
+    """
+
+    def __init__(
+        self, server: "ViserServer", terrain: HeightMap, walkers: Sequence[Walker], start: Pose
+    ) -> None:
+        """Draw robots and panel.
+
+        Args:
+            server: of the page.
+            terrain: that is clicked on.
+            walkers: side by side.
+            start: where they all begin.
+        """
+        self._terrain = terrain
+        self._wishes: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._course: float | None = None
+        self._spoken = ""
+        self._riders = [
+            Rider(walker, self._figure(server, index, walker), start)
+            for index, walker in enumerate(walkers)
+        ]
+        self._goal = server.scene.add_icosphere(
+            "/goal", radius=0.07, color=GOAL, position=start.position, visible=False
+        )
+        with server.gui.add_folder("Drive"):
+            self._add_panel(server)
+        server.scene.on_click()(self._clicked)
+        self._add_keys(server)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a robot still walks."""
+        return any(rider.walker.state == "walking" for rider in self._riders)
+
+    def frame(self, seconds: float) -> None:
+        """Let time pass on the page.
+
+        Args:
+            seconds: since the frame before.
+        """
+        while not self._wishes.empty():
+            self._wishes.get()()
+        for rider in self._riders:
+            rider.advance(seconds * self._speed.value, self._steer)
+        self._speak()
+
+    def send(self, goal: tuple[float, float]) -> None:
+        """Send the robots to a goal (x, y) [m]."""
+        self._course = None
+        for rider in self._riders:
+            rider.walker.seek(goal)
+        ground = np.nan_to_num(self._terrain.height_at(np.array([goal]))[0])
+        self._goal.position = (goal[0], goal[1], float(ground))
+        self._goal.visible = True
+        self._goal_x.value, self._goal_y.value = round(goal[0], 2), round(goal[1], 2)
+
+    def reset(self) -> None:
+        """Put the robots back to the start."""
+        self._course = None
+        for rider in self._riders:
+            rider.reset()
+        self._goal.visible = False
+
+    def stop(self) -> None:
+        """Let the robots stand."""
+        self._course = None
+        for rider in self._riders:
+            rider.walker.stop()
+
+    def turn(self, angle: float) -> None:
+        """Walk on, on a course turned by an angle [rad]; at first the course is the heading."""
+        if self._course is None:
+            self._course = self._riders[0].walker.pose.yaw
+            self._goal.visible = False
+        self._course += angle
+        for rider in self._riders:
+            self._steer(rider.walker)
+
+    def _steer(self, walker: Walker) -> None:
+        if self._course is not None:
+            x, y, _ = walker.pose.position
+            walker.seek((x + LEAD * np.cos(self._course), y + LEAD * np.sin(self._course)))
+
+    def _figure(self, server: "ViserServer", index: int, walker: Walker) -> Figure:
+        name, robot = f"/robot_{index}", walker.env.robot
+        figure = Figure(server, name, robot, ROBOTS[index % len(ROBOTS)])
+        top = max(box.high[2] for box in robot.trunk)
+        server.scene.add_label(f"{name}/name", walker.name, position=(0.0, 0.0, top + 0.15))
+        return figure
+
+    def _add_panel(self, server: "ViserServer") -> None:
+        gui = server.gui
+        gui.add_markdown(
+            "Click the ground, or steer with **I** ahead, **J** left, **L** right,"
+            " **K** stop, or a gamepad."
+        )
+        x_min, x_max, y_min, y_max = self._terrain.extent
+        middle = (0.5 * (x_min + x_max), 0.5 * (y_min + y_max))
+        self._goal_x = gui.add_number("Goal x [m]", round(middle[0], 2), step=0.01)
+        self._goal_y = gui.add_number("Goal y [m]", round(middle[1], 2), step=0.01)
+        self._button(gui, "Go", lambda: self.send((self._goal_x.value, self._goal_y.value)))
+        self._button(gui, "Stop", self.stop)
+        self._button(gui, "Back to the start", self.reset)
+        self._speed = gui.add_slider("Times real speed", 0.5, 20.0, 0.5, 4.0)
+        reach = gui.add_checkbox("Reach of the legs", True)
+        seen = gui.add_checkbox("What the policy sees", True)
+        self._status = gui.add_markdown("")
+
+        @reach.on_update
+        def _(_: Any) -> None:
+            for rider in self._riders:
+                for mesh in rider.figure.reach:
+                    mesh.visible = reach.value
+
+        @seen.on_update
+        def _(_: Any) -> None:
+            for rider in self._riders:
+                rider.figure.show_points(seen.value)
+
+    def _button(self, gui: Any, label: str, act: Callable[[], None]) -> None:
+        gui.add_button(label).on_click(lambda _: self._wishes.put(act))
+
+    def _add_keys(self, server: "ViserServer") -> None:
+        keys: list[tuple[Any, str, Callable[[], None]]] = [
+            ("I", "Walk ahead", lambda: self.turn(0.0)),
+            ("J", "Turn left", lambda: self.turn(TURN)),
+            ("L", "Turn right", lambda: self.turn(-TURN)),
+            ("K", "Stop", self.stop),
+        ]
+        for key, label, act in keys:
+            command = server.gui.add_command(label, hotkey=key)
+            command.on_trigger(lambda _, act=act: self._wishes.put(act))
+        script = resources.files("jaxleas.viewer").joinpath("gamepad.html").read_text("utf-8")
+        server.gui.add_html(f'<iframe hidden srcdoc="{html.escape(script)}"></iframe>')
+
+    def _clicked(self, event: Any) -> None:
+        point = meet(self._terrain, np.array(event.ray_origin), np.array(event.ray_direction))
+        if point is not None:
+            goal = (float(point[0]), float(point[1]))
+            self._wishes.put(lambda: self.send(goal))
+
+    def _speak(self) -> None:
+        lines = []
+        for rider in self._riders:
+            walker = rider.walker
+            lines.append(
+                f"**{walker.name}** {WORDS[walker.state]}; {walker.steps * rider.time_step:.0f} s,"
+                f" margin {walker.sight.margin:+.2f} m"
+            )
+        text = "\n\n".join(lines)
+        if text != self._spoken:
+            self._status.content = self._spoken = text

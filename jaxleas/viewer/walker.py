@@ -1,0 +1,150 @@
+"""One robot that a policy walks, a time step at a time, for as long as somebody watches."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.guide.leas import leas
+from jaxleas.guide.onnx_policy import OnnxPolicy
+from jaxleas.guide.standing import Pose
+from jaxleas.terrain.atlas import Atlas
+from jaxleas.training.policy import SteeringPolicy
+from jaxleas.types import RootMotion
+
+State = Literal["waiting", "walking", "arrived", "invalid"]
+
+
+@dataclass
+class Sight:
+    """What the robot perceives where it stands.
+
+    Attributes:
+        heights: of the observation's grid relative to the root, clipped as the policy sees them
+            [m].
+        margin: of the environment's condition [m].
+    """
+
+    heights: Float[np.ndarray, " points"]
+    margin: float
+
+
+class Walker:
+    """A robot, its policy and its goal.
+
+    All that is compiled is compiled by the first step, made here: a step afterwards takes a
+    fraction of a millisecond, whatever the goal.
+
+    Attributes:
+        name: of the policy, for people.
+        env: that the policy was trained in.
+        state: "waiting" for a first goal, "walking", "arrived" or "invalid": standing in a
+            configuration that violates the condition, until `reset`.
+        sight: at the present configuration.
+        steps: made since the start.
+    """
+
+    def __init__(
+        self, name: str, env: SteeringEnv, policy: SteeringPolicy | OnnxPolicy, atlas: Atlas
+    ) -> None:
+        """Compile the step.
+
+        Args:
+            name: of the policy, for people.
+            env: built from the policy's own config.
+            policy: that steers.
+            atlas: whose only map is the terrain.
+        """
+        self.name, self.env = name, env
+        method = leas(env, policy)
+        on_host = getattr(method, "runs_on_host", False)
+        self._move = method if on_host else jax.jit(method.__call__)
+        self._look = jax.jit(lambda motion: _look(env, atlas, motion))
+        self.reset(Pose(np.zeros(3), 0.0))
+        self.step()
+        self.reset(Pose(np.zeros(3), 0.0))
+
+    def reset(self, start: Pose) -> None:
+        """Stand still at a start, without a goal."""
+        self._motion = RootMotion(
+            position=jnp.asarray(start.position, jnp.float32)[None],
+            velocity=jnp.zeros((1, 3), jnp.float32),
+            yaw=jnp.asarray([start.yaw], jnp.float32),
+        )
+        self.before = self.pose = _pose(self._motion)
+        self._goal: tuple[float, float] | None = None
+        self.steps = 0
+        self._perceive()
+        self.state: State = "waiting" if self.sight.margin >= 0.0 else "invalid"
+
+    def seek(self, goal: tuple[float, float]) -> None:
+        """Walk to a goal (x, y) [m] from now on."""
+        self._goal = (float(goal[0]), float(goal[1]))
+        if self.state != "invalid":
+            self.state = "walking"
+
+    def stop(self) -> None:
+        """Stand where the robot is, as on arrival."""
+        if self.state == "walking":
+            self._stand("waiting")
+
+    def step(self) -> None:
+        """Move for one time step (T eq. 3.3); arrive, or fail, as a roll-out would."""
+        goal = self._goal or (0.0, 0.0)
+        target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS looks at x and y alone
+        self._motion = self._move(self._heights, self._motion, target)
+        self.before, self.pose = self.pose, _pose(self._motion)
+        self.steps += 1
+        self._perceive()
+        if not self.sight.margin >= 0.0:  # a NaN is no valid configuration
+            self._stand("invalid")
+        elif np.hypot(*(self.pose.position[:2] - goal)) <= self.env.config.goal_radius:
+            self._stand("arrived")
+
+    @property
+    def goal(self) -> tuple[float, float] | None:
+        """Where the robot was last sent (x, y) [m]."""
+        return self._goal
+
+    def between(self, share: float) -> Pose:
+        """Return the pose so far between the last two configurations, both ends included."""
+        turn = (self.pose.yaw - self.before.yaw + np.pi) % (2.0 * np.pi) - np.pi
+        way = self.pose.position - self.before.position
+        return Pose(self.before.position + share * way, self.before.yaw + share * turn)
+
+    def points_seen(self) -> Float[np.ndarray, "points 3"]:
+        """Return the observation's grid in the world, at the heights the policy is told [m]."""
+        ahead, left = self.env.layout.points_in_root.T
+        cosine, sine = np.cos(self.pose.yaw), np.sin(self.pose.yaw)
+        x, y, z = self.pose.position
+        east, north = cosine * ahead - sine * left, sine * ahead + cosine * left
+        return np.stack([x + east, y + north, z + self.sight.heights], axis=-1)
+
+    def _stand(self, state: State) -> None:
+        self.state = state
+        self._motion = RootMotion(
+            position=self._motion.position,
+            velocity=jnp.zeros_like(self._motion.velocity),
+            yaw=self._motion.yaw,
+        )
+
+    def _perceive(self) -> None:
+        self._heights, seen, margin = self._look(self._motion)
+        self.sight = Sight(np.asarray(seen[0]), float(margin[0]))
+
+
+def _look(
+    env: SteeringEnv, atlas: Atlas, motion: RootMotion
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Return the local heights, those the policy is told, and the margin."""
+    heights = env.local_heights(atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
+    seen = jnp.clip(heights[:, : len(env.layout.points_in_root)], *env.height_range)
+    return heights, seen, env.condition(heights, motion)
+
+
+def _pose(motion: RootMotion) -> Pose:
+    return Pose(np.asarray(motion.position[0], np.float64), float(motion.yaw[0]))
