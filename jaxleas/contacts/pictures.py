@@ -70,8 +70,10 @@ def _title(problem: ContactProblem, plan: ContactPlan) -> str:
 def _draw_surfaces(
     ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]
 ) -> None:
-    used, failing = set(plan.surfaces), failing_candidates(problem, plan)
+    used, failing = set(plan.surfaces), set(failing_candidates(problem, plan))
     for name, surface in problem.surfaces.items():
+        if name in problem.parts and name not in used | failing:
+            continue
         corners = surface.vertices[:, list(shown)]
         face = "0.72" if name in used else "0.88"
         edge, width = (FAILED, 2.0) if name in failing else ("0.4", 0.6)
