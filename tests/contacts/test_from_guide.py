@@ -74,7 +74,7 @@ def test_the_window_turns_with_the_root(yaw: float) -> None:
 @pytest.mark.parametrize("yaw", [0.0, 1.2])
 def test_a_candidate_is_what_lies_in_the_window(yaw: float) -> None:
     turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
-    small = (np.array(rectangle(-0.02, 0.02, -0.02, 0.02)) + [0.28, 0.0, 0.01]) @ turn.T
+    small = np.array(rectangle(0.26, 0.30, -0.02, 0.02, 0.01)) @ turn.T
     strip = np.array(rectangle(-3.0, 3.0, -0.2, 3.0)) @ turn.T
     guide = straight(0.56, yaw=yaw)
     made = problem_from_guide(guide, Scene({"strip": strip, "small": small}))
