@@ -30,6 +30,21 @@ MOST_ASIDE = 0.2
 """A foot that finds no ground within this distance [m] of its reference place cannot stand."""
 
 
+class NoGroundError(InputError):
+    """The scene has nothing to stand on at one of the kept configurations.
+
+    Attributes:
+        phase: that finds no candidate; -1 if the feet already have no place to start from.
+    """
+
+    def __init__(self, message: str, phase: int) -> None:
+        super().__init__(message)
+        self.phase = phase
+
+    def __reduce__(self) -> tuple:
+        return type(self), (str(self), self.phase)
+
+
 def problem_from_guide(
     guide: GuidePath,
     scene: Scene,
@@ -60,7 +75,8 @@ def problem_from_guide(
         polytopes: instead of the robot's own.
 
     Raises:
-        InputError: the guide is too short, not finite, or leaves the scene (where is said).
+        InputError: the guide is too short or not finite.
+        NoGroundError: it leaves the scene (where is said).
     """
     _require_usable(guide, every, window, first_foot)
     described = load_robot(robot)
@@ -70,16 +86,15 @@ def problem_from_guide(
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)
-    last = len(guide) - 1
-    kept = [*range(every, last, every), last]
     foot, phases, parts = first_foot, [], {}
-    for index in kept:
+    for index in kept_configurations(len(guide), every):
         found = finder.find(guide.position[index], float(guide.yaw[index]), foot)
         if not found:
             x, y, z = guide.position[index]
-            raise InputError(
+            raise NoGroundError(
                 f"the guide leaves the scene: around configuration {index}, with its root at"
-                f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}"
+                f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}",
+                len(phases),
             )
         names = [_add(surfaces, parts, len(phases), *each) for each in found]
         phases.append(Phase(foot, wrap(guide.yaw[index]), tuple(names), guide.position[index]))
@@ -94,6 +109,16 @@ def problem_from_guide(
         foot_half_size=described.foot_half_size,
         parts=parts,
     )
+
+
+def kept_configurations(length: int, every: int) -> list[int]:
+    """Return the configurations of a guide that phases are made of: one in so many, the last too.
+
+    Args:
+        length: configurations of the guide.
+        every: keep one of so many.
+    """
+    return [*range(every, length - 1, every), length - 1]
 
 
 def _add(
@@ -176,10 +201,11 @@ def _initial(
             if aside <= MOST_ASIDE and lowest - 0.1 <= point[2] - root[2] <= 0.0
         ]
         if not reachable:
-            raise InputError(
+            raise NoGroundError(
                 f"the guide starts where {foot} cannot stand: no surface lies within"
                 f" {MOST_ASIDE:g} m of ({place[0]:.2f}, {place[1]:.2f}) and within a leg's length"
-                f" below the root at {root[2]:.2f} m"
+                f" below the root at {root[2]:.2f} m",
+                -1,
             )
         _, _, point = min(reachable)  # the nearest; of those right below, the highest
         poses[foot] = FootPose(np.array(point), yaw)

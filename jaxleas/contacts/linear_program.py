@@ -104,7 +104,7 @@ def _pass(program: Program, highs: highspy.Highs) -> None:
         len(program.cost), len(program.row_low), A.nnz,
         int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
         program.cost, program.low, program.high, program.row_low, program.row_high,
-        A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data, kinds,
+        A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data.astype(np.float64), kinds,
     )  # fmt: skip
 
 
