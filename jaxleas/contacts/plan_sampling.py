@@ -17,9 +17,11 @@ from jaxleas.contacts.sampling.world import World, talos_world
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.types import GuidePath, InputError
 
 LATE = "time limit"
+MOST_BEYOND = 1.0
+"""A root further beyond the scene's surfaces [m] can stand on none."""
 
 
 def plan_sampling(
@@ -38,16 +40,19 @@ def plan_sampling(
         guide: followed exactly.
         scene: surfaces to stand on, obstacles to stay clear of.
         settings: of the planner.
-        time_limit: [s]; when it is over, the plan's status says "time_limit".
+        time_limit: [s], once the data base is made; after it the plan's status is "time_limit".
 
     Raises:
-        InputError: the guide or the scene cannot be used.
+        InputError: the guide or the scene cannot be used, or the guide leaves the scene.
         PlannerError: a bug of ours: the plan fails its certificate.
     """
     require_time_limit(time_limit)
     settings = settings or SamplingSettings()
+    world = talos_world(scene, settings)
     begin = time.perf_counter()
-    walked = _TimedWalk(talos_world(scene, settings), guide, begin + time_limit).plans()[0]
+    walk = _TimedWalk(world, guide, begin + time_limit)
+    _require_over(scene, guide)
+    walked = walk.plans()[0]
     seconds = time.perf_counter() - begin
     plan = contact_plan(walked, settings.contact_lift).but(seconds=seconds)
     if LATE in walked.reason:
@@ -118,6 +123,20 @@ def walked_problem(plan: ContactPlan, guide: GuidePath, scene: Scene) -> Contact
         polytopes=StepPolytopes({}, {}),
         foot_half_size=robot.foot_half_size,
     )
+
+
+def _require_over(scene: Scene, guide: GuidePath) -> None:
+    """Refuse a guide that leaves the rectangle around all surfaces by more than a leg's length."""
+    corners = np.concatenate([np.asarray(each)[:, :2] for each in scene.surfaces.values()])
+    roots = np.asarray(guide.position, np.float64)
+    beyond = np.maximum(corners.min(axis=0) - roots[:, :2], roots[:, :2] - corners.max(axis=0))
+    outside = np.flatnonzero(beyond.max(axis=1) > MOST_BEYOND)
+    if len(outside):
+        x, y, z = roots[outside[0]]
+        raise InputError(
+            f"the guide leaves the scene: configuration {outside[0]}, with its root at"
+            f" ({x:.2f}, {y:.2f}, {z:.2f}), is more than {MOST_BEYOND:g} m beyond every surface"
+        )
 
 
 class _TimedWalk(_Walk):

@@ -155,8 +155,13 @@ def test_what_was_reached_is_kept_where_the_walk_stops() -> None:
     assert "neither foot finds a contact" in plan.reason
     assert 0 < plan.postures[-1].configuration < 200
     assert plan.max_violation <= 1e-6
-    aside = plan_sampling(straight(4.0, y=9.0), hole())
+    aside = plan_sampling(straight(4.0, y=2.9), hole())
     assert (aside.status, aside.last_feasible_phase, aside.max_violation) == ("not_found", -1, None)
+
+
+def test_a_guide_that_leaves_the_scene_is_refused() -> None:
+    with pytest.raises(InputError, match="leaves the scene: configuration 426, with its root at"):
+        plan_sampling(straight(9.0), flat())
 
 
 def test_late_is_late_and_not_a_verdict() -> None:
