@@ -1,11 +1,14 @@
-"""Contact problems and their exact planners: mixed-integer, SL1M; certificates; pictures."""
+"""Contact problems, their exact planners (mixed-integer, SL1M, sampling) and certificates."""
 
 from jaxleas.contacts.certificate import Violation, certify
 from jaxleas.contacts.from_guide import problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
 from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
+from jaxleas.contacts.plan_sampling import plan_sampling
 from jaxleas.contacts.planners import PLANNERS, PlannerError, plan_mip, plan_sl1m
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
+from jaxleas.contacts.posture import Posture
+from jaxleas.contacts.posture_certificate import certify_postures
 from jaxleas.contacts.prefix import last_feasible_phase
 from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
 from jaxleas.contacts.problem_file import read_problem, write_problem
@@ -19,12 +22,15 @@ __all__ = [
     "FootPose",
     "Phase",
     "PlannerError",
+    "Posture",
     "StepPolytopes",
     "Violation",
     "certify",
+    "certify_postures",
     "last_feasible_phase",
     "load_step_polytopes",
     "plan_mip",
+    "plan_sampling",
     "plan_sl1m",
     "problem_from_guide",
     "read_guide_path",

@@ -4,7 +4,6 @@ Shares no code with the planners: it reads the problem's value and does plain ar
 phase, exactly as the format states the constraints (docs/contacts.md).
 """
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -68,16 +67,15 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
 
 
 def _on_surface(corners: np.ndarray, point: np.ndarray) -> list[tuple[float, str]]:
-    normal = np.zeros(3)
-    for first, second in itertools.pairwise(corners[1:]):  # a fan of triangles
-        normal += np.cross(first - corners[0], second - corners[0])
+    arms = corners[1:] - corners[0]
+    normal = np.cross(arms[:-1], arms[1:]).sum(axis=0)  # a fan of triangles
     normal /= math.sqrt(float(normal @ normal))
-    found = [(abs(float(normal @ (point - corners.mean(axis=0)))), "foot on the surface's plane")]
-    for first, second in zip(corners, [*corners[1:], corners[0]], strict=True):
-        outward = np.cross(second - first, normal)
-        outward /= math.sqrt(float(outward @ outward))
-        found.append((float(outward @ (point - first)), "foot within the surface's edges"))
-    return found
+    outward = np.cross(np.roll(corners, -1, axis=0) - corners, normal)
+    beyond = ((point - corners) * outward).sum(axis=1) / np.sqrt((outward * outward).sum(axis=1))
+    return [
+        (abs(float(normal @ (point - corners.mean(axis=0)))), "foot on the surface's plane"),
+        (float(beyond.max()), "foot within the surface's edges"),
+    ]
 
 
 def _step(

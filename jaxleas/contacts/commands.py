@@ -8,9 +8,13 @@ from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
 from jaxleas.contacts.planners import Cost, plan_mip, plan_sl1m
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
+from jaxleas.terrain.scene import Scene, read_scene
+from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError, JaxleasError
 
-Planner = Literal["mip", "sl1m"]
+Planner = Literal["mip", "sl1m", "sampling"]
+EVERY: dict[str, int] = {"mip": 14, "sl1m": 14, "sampling": 5}
+"""Which configurations of the guide are kept: T 5.2.3, T 4.1.4."""
 
 
 class NotCertifiedError(JaxleasError):
@@ -34,7 +38,7 @@ def plan(
 
     Args:
         problem: the contact problem, .json.
-        planner: mip (exact) or sl1m (fast, incomplete).
+        planner: mip (exact) or sl1m (fast, incomplete); sampling needs a guide (jaxleas contacts).
         out: the plan, .json; one without footholds, but with the reason, when there is no plan.
         time_limit: [s]; a plan not found in time has the status time_limit.
         cost: of the mip: footholds near the guide's reference ones, by L1 or squared distance.
@@ -42,21 +46,46 @@ def plan(
         max_combinations: after which sl1m gives up.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
+    _require_writable_names(out, picture)
+    if planner == "sampling":
+        raise InputError(
+            "the sampling planner follows a guide path among obstacles, and a contact problem has"
+            " neither: use jaxleas contacts GUIDE.npz --scene SCENE.json --planner sampling"
+        )
     read = read_problem(problem)
     if without_guide:
         read = read.without_guide()
     return _plan_and_write(read, planner, out, time_limit, cost, max_combinations, picture)
 
 
-def check(plan: Path, problem: Path, *, picture: Path | None = None) -> None:
-    """Recompute every constraint of a problem for a plan, in metres.
+def check(
+    plan: Path,
+    *,
+    problem: Path | None = None,
+    guide: Path | None = None,
+    scene: Path | None = None,
+    query: int = 0,
+    picture: Path | None = None,
+) -> None:
+    """Recompute every constraint on a plan, in metres.
 
     Args:
         plan: the contact plan, .json.
-        problem: the contact problem it answers, .json.
+        problem: the contact problem it answers, .json (mip and sl1m).
+        guide: the guide path it follows, .npz (sampling).
+        scene: the scene it crosses, .json (sampling).
+        query: which path of the guide's file.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
-    read, asked = read_plan(plan), read_problem(problem)
+    read = read_plan(plan)
+    if picture is not None:
+        _require_writable_names(Path("plan.json"), picture)
+    if read.planner == "sampling":
+        _check_postures(plan, read, problem, guide, scene, query, picture)
+        return
+    if problem is None:
+        raise InputError(f"{plan} is of the {read.planner} planner: say which --problem it answers")
+    asked = read_problem(problem)
     worst = certify(asked, read)
     if picture is not None:
         _draw(picture, asked, read)
@@ -64,6 +93,40 @@ def check(plan: Path, problem: Path, *, picture: Path | None = None) -> None:
     if not worst.certified:
         raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
     print(f"{plan} is certified: {len(asked)} phases, nothing violated (tightest: {verdict})")
+
+
+def _check_postures(
+    path: Path,
+    read: ContactPlan,
+    problem: Path | None,
+    guide: Path | None,
+    scene: Path | None,
+    query: int,
+    picture: Path | None,
+) -> None:
+    from jaxleas.contacts.guide_file import read_guide_path
+    from jaxleas.contacts.plan_sampling import walked_problem
+    from jaxleas.contacts.posture_certificate import certify_postures
+
+    if problem is not None or guide is None or scene is None:
+        raise InputError(
+            f"{path} is of the sampling planner: it is checked against its guide and scene, with"
+            " --guide GUIDE.npz --scene SCENE.json"
+        )
+    followed, crossed = read_guide_path(guide, query), read_scene(scene)
+    certificate = certify_postures(read, followed, crossed)
+    if picture is not None:
+        _draw(picture, walked_problem(read, followed, crossed), read, followed)
+    if not certificate.certified:
+        raise NotCertifiedError(
+            f"{path} is no plan for {guide} on {scene}: {certificate.complaint}"
+        )
+    worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"
+    print(
+        f"{path} is certified: {len(read.postures or ())} postures, nothing violated (tightest:"
+        f" {worst.constraint}, posture {worst.phase}: {worst.metres:.3g} m), least robustness"
+        f" {certificate.least_robustness:.3g} N{end}"
+    )
 
 
 def contacts(
@@ -76,7 +139,7 @@ def contacts(
     query: int = 0,
     robot: str = "talos",
     model: Model = "two_com",
-    every: int = 14,
+    every: int | None = None,
     candidates: Literal["window", "rom"] = "window",
     window: float = 0.8,
     time_limit: float = 60.0,
@@ -89,14 +152,14 @@ def contacts(
     Args:
         guide: the guide path, .npz.
         scene: its terrain as polygons, .json.
-        planner: mip (exact) or sl1m (fast, incomplete).
+        planner: mip (exact), sl1m (fast, incomplete) or sampling (acyclic, follows the guide).
         out: the plan, .json.
-        problem: write the contact problem here too, .json.
+        problem: write the contact problem here too, .json (mip and sl1m).
         query: which path of the file.
         robot: whose step polytopes are used.
         model: two_com (with the centre of mass) or feet.
-        every: keep one configuration of so many, one step each.
-        candidates: surfaces in a window around the root, or in the moving leg's range of motion.
+        every: keep one configuration of so many; 14 for mip and sl1m (a step each), 5 for sampling.
+        candidates: what lies in a window around the root, or in the moving leg's range of motion.
         window: the window's edge [m].
         time_limit: [s]; a plan not found in time has the status time_limit.
         cost: of the mip: footholds near the guide's reference ones, by L1 or squared distance.
@@ -105,20 +168,88 @@ def contacts(
     """
     from jaxleas.contacts.from_guide import problem_from_guide
     from jaxleas.contacts.guide_file import read_guide_path
-    from jaxleas.terrain.scene import read_scene
 
+    _require_writable_names(out, picture)
+    followed, crossed = read_guide_path(guide, query), read_scene(scene)
+    kept = EVERY[planner] if every is None else every
+    if planner == "sampling":
+        changed = {
+            "problem": problem is not None,
+            "model": model != "two_com",
+            "candidates": candidates != "window",
+            "window": window != 0.8,
+            "cost": cost != "none",
+            "max-combinations": max_combinations != 2000,
+        }
+        _require_none_of(changed)
+        return _sample_and_write(followed, crossed, robot, kept, time_limit, out, picture)
     made = problem_from_guide(
-        read_guide_path(guide, query),
-        read_scene(scene),
+        followed,
+        crossed,
         robot=robot,
         model=model,
-        every=every,
+        every=kept,
         candidates=candidates,
         window=window,
     )
     if problem is not None:
         write_problem(problem, made)
     return _plan_and_write(made, planner, out, time_limit, cost, max_combinations, picture)
+
+
+def _require_writable_names(out: Path, picture: Path | None) -> None:
+    """Find out before planning what cannot be written after it."""
+    if Path(out).suffix != ".json":
+        raise InputError(f"--out {out}: contact plans are written as .json")
+    if picture is not None:
+        from jaxleas.contacts.pictures import require_picture
+
+        require_picture(picture)
+
+
+def _require_none_of(changed: dict[str, bool]) -> None:
+    wrong = [f"--{name}" for name, is_changed in changed.items() if is_changed]
+    if wrong:
+        raise InputError(
+            f"the sampling planner has no contact problem: {', '.join(wrong)} is for mip and sl1m"
+        )
+
+
+def _sample_and_write(
+    guide: GuidePath,
+    scene: Scene,
+    robot: str,
+    every: int,
+    time_limit: float,
+    out: Path,
+    picture: Path | None,
+) -> ContactPlan:
+    from jaxleas.contacts.plan_sampling import plan_sampling, walked_problem
+    from jaxleas.contacts.sampling import SamplingSettings
+
+    if robot != "talos":
+        raise InputError(f"the sampling planner knows the legs of talos only, not of {robot!r}")
+    if every < 1:
+        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
+    found = plan_sampling(guide, scene, SamplingSettings(keep_every=every), time_limit=time_limit)
+    write_plan(out, found)
+    if picture is not None:
+        _draw(picture, walked_problem(found, guide, scene), found, guide)
+    print(f"{describe_walk(guide, found)}\nwritten to {out}")
+    return found
+
+
+def describe_walk(guide: GuidePath, found: ContactPlan) -> str:
+    """Return a sampling plan's outcome in one line."""
+    postures = found.postures or ()
+    steps = f"{len(found.surfaces)} steps in {1000.0 * found.seconds:.0f} ms"
+    if found.robustness:
+        steps += f", least robustness {min(found.robustness):.3g} N"
+    if found.feasible:
+        return f"sampling: feasible, {steps}, certified to {found.max_violation:.1g} m"
+    reached = postures[-1].configuration if postures else -1
+    where = f"configuration {reached} of {len(guide) - 1} reached"
+    return f"sampling: {found.status} ({where}), {steps}: {found.reason}"
 
 
 def _plan_and_write(
@@ -130,12 +261,6 @@ def _plan_and_write(
     max_combinations: int,
     picture: Path | None,
 ) -> ContactPlan:
-    if Path(out).suffix != ".json":
-        raise InputError(f"--out {out}: contact plans are written as .json")
-    if picture is not None:
-        from jaxleas.contacts.pictures import require_picture
-
-        require_picture(picture)
     if planner == "sl1m":
         if cost != "none":
             raise InputError("a cost is for the mip planner; sl1m's cost is the L1 norm itself")
@@ -163,7 +288,9 @@ def describe(problem: ContactProblem, found: ContactPlan) -> str:
     return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
 
 
-def _draw(picture: Path, problem: ContactProblem, found: ContactPlan) -> None:
+def _draw(
+    picture: Path, problem: ContactProblem, found: ContactPlan, guide: GuidePath | None = None
+) -> None:
     from jaxleas.contacts.pictures import draw_plan
 
-    draw_plan(picture, problem, found)
+    draw_plan(picture, problem, found, guide)

@@ -27,7 +27,7 @@ class Blame:
 
     Attributes:
         short: for each family of constraints to blame, how much more of it suffices [m].
-        surface: another surface of the scene that would do; empty if none, or if all were allowed.
+        surface: of the scene that would do if it were a candidate, whole; empty if none.
     """
 
     short: dict[str, float]
@@ -44,14 +44,17 @@ def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> st
     """
     failing = problem.phases[phase]
     blame = find_blame(problem.prefix(phase + 1), deadline)
-    names = ", ".join(f"'{name}'" for name in failing.candidates[:6])
-    more = len(failing.candidates) - 6
+    allowed = list(dict.fromkeys(problem.whole(name) for name in failing.candidates))
+    names = ", ".join(f"'{name}'" for name in allowed[:6])
+    more = len(allowed) - 6
     where = f"{names} and {more} more" if more > 0 else names
     helps = [
         f"with at most {metres:g} m more {WORDS[name]}"
         for name, metres in sorted(blame.short.items(), key=lambda item: item[1])
     ]
-    if blame.surface:
+    if blame.surface in allowed:
+        helps.append(f"onto another part of '{blame.surface}' than its candidate")
+    elif blame.surface:
         helps.append(f"onto '{blame.surface}', which is none of its candidates")
     sentence = f"phase {phase} ({failing.foot} onto {where}) is the first step that cannot be made"
     if not helps:
@@ -94,7 +97,9 @@ def _least(outcome: Callable[[float], Outcome]) -> float | None:
 
 
 def _other_surface(prefix: ContactProblem, deadline: float) -> str:
-    others = tuple(name for name in prefix.surfaces if name not in prefix.phases[-1].candidates)
+    others = tuple(
+        name for name in prefix.whole_surfaces if name not in prefix.phases[-1].candidates
+    )
     if not others:
         return ""
     before = [phase.candidates for phase in prefix.phases[:-1]]

@@ -10,9 +10,10 @@ from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Model, Phase
 from jaxleas.contacts.steps import rotation
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.geometry import Polytope, pack_polygons, polygons_meet_polytope
+from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.boxes import Box
 from jaxleas.robots import Robot, load_robot
+from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
@@ -20,9 +21,11 @@ Candidates = Literal["window", "rom"]
 EVERY = 14
 """One configuration of so many is kept, N_ref of T 5.2.3: 28 cm at 2 cm a configuration."""
 WINDOW = 0.8
-"""Edge of the square around the root whose surfaces are candidates (T 5.2.3) [m]."""
+"""Edge of the square around the root in which a foot may land (T 5.2.3) [m]."""
 BESIDE_ROOT = 0.0848
 """The feet of the reference configuration stand this far beside the root [m]."""
+LEAST_PART = 1e-4
+"""Less than this [m^2] of a surface is no candidate."""
 MOST_ASIDE = 0.2
 """A foot that finds no ground within this distance [m] of its reference place cannot stand."""
 
@@ -65,8 +68,8 @@ def problem_from_guide(
         robot: its name.
         model: "two_com" or "feet".
         every: keep one configuration of so many.
-        candidates: "window": surfaces that meet a square around the root, turned with it; "rom":
-            those that meet the range of motion of the leg that moves.
+        candidates: "window": what lies of the surfaces in a square around the root, turned with it;
+            "rom": what lies in the range of motion of the leg that moves.
         window: the square's edge [m].
         first_foot: which moves first.
         polytopes: instead of the robot's own.
@@ -83,17 +86,18 @@ def problem_from_guide(
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)
-    foot, phases = first_foot, []
+    foot, phases, parts = first_foot, [], {}
     for index in kept_configurations(len(guide), every):
-        names = finder.find(guide.position[index], float(guide.yaw[index]), foot)
-        if not names:
+        found = finder.find(guide.position[index], float(guide.yaw[index]), foot)
+        if not found:
             x, y, z = guide.position[index]
             raise NoGroundError(
                 f"the guide leaves the scene: around configuration {index}, with its root at"
                 f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}",
                 len(phases),
             )
-        phases.append(Phase(foot, wrap(guide.yaw[index]), names, guide.position[index]))
+        names = [_add(surfaces, parts, len(phases), *each) for each in found]
+        phases.append(Phase(foot, wrap(guide.yaw[index]), tuple(names), guide.position[index]))
         foot = "RF" if foot == "LF" else "LF"
     return ContactProblem(
         robot=robot,
@@ -103,6 +107,7 @@ def problem_from_guide(
         phases=tuple(phases),
         polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
         foot_half_size=described.foot_half_size,
+        parts=parts,
     )
 
 
@@ -116,13 +121,30 @@ def kept_configurations(length: int, every: int) -> list[int]:
     return [*range(every, length - 1, every), length - 1]
 
 
+def _add(
+    surfaces: dict[str, ContactSurface],
+    parts: dict[str, str],
+    phase: int,
+    whole: str,
+    part: ContactSurface | None,
+) -> str:
+    """Add the part of a surface that is a candidate, unless all of it is; return its name."""
+    if part is None:
+        return whole
+    name = f"{whole}@{phase}"
+    while name in surfaces:  # a scene may use such names itself
+        name += "'"
+    surfaces[name], parts[name] = part, whole
+    return name
+
+
 def wrap(angle: float) -> float:
     """Return an angle in [-pi, pi) [rad]."""
     return (float(angle) + math.pi) % (2.0 * math.pi) - math.pi
 
 
 class _Finder:
-    """Finds the candidate surfaces around a root."""
+    """Finds the candidate surfaces around a root, and the part of each that is near enough."""
 
     def __init__(
         self,
@@ -132,7 +154,8 @@ class _Finder:
         candidates: Candidates,
     ) -> None:
         self.names = list(surfaces)
-        self.packed = pack_polygons([surface.vertices for surface in surfaces.values()])
+        self.corners = [surface.vertices for surface in surfaces.values()]
+        self.packed = pack_polygons(self.corners)
         reach = [limb.range_of_motion for limb in robot.limbs]
         if candidates == "window":
             low = min(float(each.vertices[:, 2].min()) for each in reach)
@@ -142,12 +165,24 @@ class _Finder:
             reach = [square, square]
         self.reach: dict[str, Polytope] = dict(zip(FEET, reach, strict=True))
 
-    def find(self, root: np.ndarray, yaw: float, foot: str) -> tuple[str, ...]:
-        near = np.linalg.norm(self.packed[:, :, :2].mean(axis=1) - root[:2], axis=1)
-        order = np.argsort(near, kind="stable")  # nearest first: the order that files show
-        local = (self.packed[order] - root) @ rotation(yaw)
-        meets = polygons_meet_polytope(local, self.reach[foot])
-        return tuple(self.names[i] for i in order[meets])
+    def find(
+        self, root: np.ndarray, yaw: float, foot: str
+    ) -> list[tuple[str, ContactSurface | None]]:
+        """Return names, nearest first, each with the part within reach; None where all of it is."""
+        turn, reach = rotation(yaw), self.reach[foot]
+        meets = np.flatnonzero(polygons_meet_polytope((self.packed - root) @ turn, reach))
+        found: list[tuple[float, str, ContactSurface | None]] = []
+        for index in meets.tolist():
+            local = (self.corners[index] - root) @ turn
+            inside = clip_polygon(local, reach)
+            part = None
+            if inside is not local:
+                if len(inside) < 3 or np.linalg.norm(polygon_area_vector(inside)) < LEAST_PART:
+                    continue
+                part = ContactSurface(inside @ turn.T + root)
+            apart = float(np.linalg.norm(inside[:, :2].mean(axis=0)))
+            found.append((apart, self.names[index], part))
+        return [(name, part) for _, name, part in sorted(found, key=lambda each: each[0])]
 
 
 def _initial(

@@ -77,7 +77,7 @@ def solve(program: Program, time_limit: float = np.inf) -> Solution:
         highs.setOptionValue("presolve", "off")  # takes longer than these programs
         highs.setOptionValue("primal_feasibility_tolerance", TOLERANCE)
         highs.setOptionValue("dual_feasibility_tolerance", 1e-8)
-    highs.passModel(_to_highs(program))
+    _pass(program, highs)
     highs.run()
     outcome = _OUTCOMES.get(highs.getModelStatus(), "failed")
     solution = highs.getSolution()
@@ -95,20 +95,17 @@ _OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
 }
 
 
-def _to_highs(program: Program) -> highspy.HighsLp:
-    lp = highspy.HighsLp()
-    lp.num_col_, lp.num_row_ = len(program.cost), len(program.row_low)
-    lp.col_cost_, lp.col_lower_, lp.col_upper_ = program.cost, program.low, program.high
-    lp.row_lower_, lp.row_upper_ = program.row_low, program.row_high
-    matrix = lp.a_matrix_
-    matrix.format_ = highspy.MatrixFormat.kRowwise
-    matrix.start_ = program.A.indptr  # pyright: ignore[reportAttributeAccessIssue]
-    matrix.index_ = program.A.indices  # pyright: ignore[reportAttributeAccessIssue]
-    matrix.value_ = program.A.data  # pyright: ignore[reportAttributeAccessIssue]
-    if program.integer is not None:
-        kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
-        lp.integrality_ = [kinds[int(each)] for each in program.integer]
-    return lp
+def _pass(program: Program, highs: highspy.Highs) -> None:
+    """Hand over arrays whole; the attributes of a HighsLp would copy them number by number."""
+    A = program.A
+    integer = program.integer
+    kinds = np.zeros(len(program.cost), np.int32) if integer is None else integer.astype(np.int32)
+    highs.passModel(
+        len(program.cost), len(program.row_low), A.nnz,
+        int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
+        program.cost, program.low, program.high, program.row_low, program.row_high,
+        A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data.astype(np.float64), kinds,
+    )  # fmt: skip
 
 
 @dataclass

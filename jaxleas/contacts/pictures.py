@@ -9,6 +9,7 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.steps import rotation
 from jaxleas.files import atomic_path
+from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ COLOURS = {"LF": "tab:red", "RF": "goldenrod"}
 GUIDE, COM, FAILED = "tab:blue", "black", "magenta"
 VIEWS = {"above": (0, 1), "from the side": (0, 2)}
 """Which coordinates each view shows."""
+MOST_MARKED = 120
+"""A guide with more configurations is drawn as a line without dots."""
 AROUND = 0.4  # shown beyond footholds and roots [m]
 
 
@@ -27,7 +30,9 @@ def require_picture(path: str | Path) -> None:
         raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
 
 
-def draw_plan(path: str | Path, problem: ContactProblem, plan: ContactPlan) -> None:
+def draw_plan(
+    path: str | Path, problem: ContactProblem, plan: ContactPlan, guide: GuidePath | None = None
+) -> None:
     """Draw a plan, or where planning fails, in two views.
 
     Surfaces are grey, the guide blue, left feet red and right feet yellow, the centre of mass
@@ -38,6 +43,7 @@ def draw_plan(path: str | Path, problem: ContactProblem, plan: ContactPlan) -> N
         path: of the picture (.png, .svg, .pdf).
         problem: the contact problem.
         plan: its answer.
+        guide: drawn whole; without it, the roots of the phases are.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
@@ -49,11 +55,14 @@ def draw_plan(path: str | Path, problem: ContactProblem, plan: ContactPlan) -> N
     figure = Figure(figsize=(12, 7), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 1)
+    kept = [phase.root for phase in problem.phases if phase.root is not None]
+    roots = np.array(kept).reshape(-1, 3) if guide is None else np.asarray(guide.position)
     for ax, (view, shown) in zip(axes, VIEWS.items(), strict=True):
         _draw_surfaces(ax, problem, plan, shown)
-        _draw_guide(ax, problem, shown)
+        _draw_guide(ax, roots, shown)
         _draw_feet(ax, problem, plan, shown)
-        _frame(ax, problem, plan, shown)
+        _draw_stop(ax, plan, roots, shown)
+        _frame(ax, problem, plan, roots, shown)
         ax.set_ylabel(f"{'xyz'[shown[1]]} [m], {view}")
     axes[1].set_xlabel("x [m]")
     axes[0].legend(loc="upper right", fontsize="small")
@@ -64,14 +73,17 @@ def draw_plan(path: str | Path, problem: ContactProblem, plan: ContactPlan) -> N
 
 def _title(problem: ContactProblem, plan: ContactPlan) -> str:
     outcome = plan.status if plan.feasible else f"{plan.status}: {plan.reason}"
-    return f"{plan.planner}, model {problem.model}, {len(problem)} phases: {outcome}"
+    how = "" if plan.postures is not None else f", model {problem.model}"
+    return f"{plan.planner}{how}, {len(problem)} phases: {outcome}"
 
 
 def _draw_surfaces(
     ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]
 ) -> None:
-    used, failing = set(plan.surfaces), failing_candidates(problem, plan)
+    used, failing = set(plan.surfaces), set(failing_candidates(problem, plan))
     for name, surface in problem.surfaces.items():
+        if name in problem.parts and name not in used | failing:
+            continue
         corners = surface.vertices[:, list(shown)]
         face = "0.72" if name in used else "0.88"
         edge, width = (FAILED, 2.0) if name in failing else ("0.4", 0.6)
@@ -86,11 +98,18 @@ def failing_candidates(problem: ContactProblem, plan: ContactPlan) -> tuple[str,
     return problem.phases[last + 1].candidates
 
 
-def _draw_guide(ax: "Axes", problem: ContactProblem, shown: tuple[int, int]) -> None:
-    roots = [phase.root for phase in problem.phases if phase.root is not None]
-    if roots:
-        path = np.array(roots)[:, list(shown)]
-        ax.plot(*path.T, ".-", color=GUIDE, linewidth=1.2, label="guide", zorder=2)
+def _draw_guide(ax: "Axes", roots: np.ndarray, shown: tuple[int, int]) -> None:
+    if len(roots):
+        marker = ".-" if len(roots) < MOST_MARKED else "-"
+        ax.plot(*roots[:, list(shown)].T, marker, color=GUIDE, linewidth=1.2, label="guide")
+
+
+def _draw_stop(ax: "Axes", plan: ContactPlan, roots: np.ndarray, shown: tuple[int, int]) -> None:
+    """Mark the last configuration that a sampling plan reached, where it stops short."""
+    if plan.feasible or not plan.postures:
+        return
+    here = roots[plan.postures[-1].configuration, list(shown)]
+    ax.plot(*here, "x", color=FAILED, markersize=12, markeredgewidth=3, label="stopped", zorder=5)
 
 
 def _draw_feet(
@@ -100,8 +119,9 @@ def _draw_feet(
     if plan.footholds is not None and len(plan.footholds):
         for phase, point in zip(problem.phases, plan.footholds, strict=False):
             feet.append((phase.foot, point, phase.yaw))
-    if plan.com is not None and len(plan.com):
-        com = plan.com.reshape(-1, 3)[:, list(shown)]
+    places = [each.com for each in plan.postures or ()] if plan.com is None else plan.com
+    if len(places):
+        com = np.reshape(places, (-1, 3))[:, list(shown)]
         ax.plot(*com.T, "-", color=COM, linewidth=0.8, label="centre of mass", zorder=4)
     labelled = set()
     for foot, point, yaw in feet:
@@ -124,13 +144,19 @@ def sole(half_size: tuple[float, float]) -> np.ndarray:
     return np.column_stack([corners, np.zeros(4)])
 
 
-def _frame(ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]) -> None:
+def _frame(
+    ax: "Axes",
+    problem: ContactProblem,
+    plan: ContactPlan,
+    roots: np.ndarray,
+    shown: tuple[int, int],
+) -> None:
     """Show what the robot crosses, not the whole scene."""
     points = [pose.position for pose in problem.initial.values()]
-    points += [phase.root for phase in problem.phases if phase.root is not None]
+    points += list(roots)
     if plan.footholds is not None:
         points += list(plan.footholds)
-    if not plan.feasible:
+    if not plan.feasible and plan.postures is None:
         names = {name for phase in problem.phases for name in phase.candidates}
         points += [corner for name in names for corner in problem.surfaces[name].vertices]
     here = np.array(points)[:, list(shown)]

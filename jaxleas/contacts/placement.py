@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 
-from jaxleas.contacts.com import foot_yaws, place_com
+from jaxleas.contacts.com import foot_yaws
+from jaxleas.contacts.com_places import place_coms
 from jaxleas.contacts.least_distance import least_distance
 from jaxleas.contacts.linear_program import Outcome, Program, Rows, Solution, solve
 from jaxleas.contacts.problem import ContactProblem
@@ -90,18 +91,14 @@ def put_com(
     """
     if problem.model != "two_com":
         return None, steps, 0
-    com, steps, found = np.zeros((len(steps), 2, 3)), list(steps), 0
-    for index, yaws in enumerate(foot_yaws(problem, steps)):
-        step = steps[index]
-        stood = standing_point(problem, step, footholds)
-        turns = rotation(yaws[0]), rotation(yaws[1])
-        places, cuts = place_com(step, footholds[index] - stood, problem.foot_half_size, turns)
-        com[index] = stood + places
-        if cuts:
-            found += 1
-            normals, bounds = zip(*cuts, strict=True)
-            steps[index] = step.with_cuts(np.array(normals), np.array(bounds))
-    return com, steps, found
+    stood = np.array([standing_point(problem, step, footholds) for step in steps])
+    turns = np.array([[rotation(yaw) for yaw in yaws] for yaws in foot_yaws(problem, steps)])
+    places, cuts = place_coms(steps, footholds - stood, problem.foot_half_size, turns)
+    steps = list(steps)
+    for index, found in cuts.items():
+        normals, bounds = zip(*found, strict=True)
+        steps[index] = steps[index].with_cuts(np.array(normals), np.array(bounds))
+    return stood[:, None] + places, steps, len(cuts)
 
 
 def standing_point(

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
 from jaxleas.files import read_json, write_json
 from jaxleas.types.errors import InputError
 
@@ -19,21 +20,23 @@ class ContactPlan:
     """A planner's answer.
 
     Attributes:
-        planner: "mip" or "sl1m".
+        planner: "mip", "sl1m" or "sampling".
         feasible: whether a plan was found.
         status: "feasible"; "infeasible" (proved); "time_limit" (not decided in time); "not_found"
             (an incomplete planner gave up; proves nothing).
         reason: why there is none, a sentence; empty when there is one.
         surfaces: name of the surface of each phase; of the phases planned.
         footholds: of each phase, in the world [m].
-        com: two positions of the centre of mass a phase [m]; None for the model "feet".
+        com: two positions of the centre of mass a phase [m]; None where the planner has none.
         last_feasible_phase: the last phase that can be made (the last of all when feasible, -1
             when none can); None when not asked for.
         max_violation: by the certificate [m]; None without plan.
         seconds: spent planning.
         combinations: of surfaces tried one after the other; None where a solver does that inside.
         undecided: phases that the L1 relaxation left without a surface (SL1M only).
-        robustness: of each posture, where the planner knows it.
+        robustness: of each posture [N]; None for planners without postures.
+        postures: both feet at each kept configuration of the guide (sampling only).
+        gap: between a standing sole and its surface in these postures [m].
     """
 
     planner: str
@@ -49,6 +52,8 @@ class ContactPlan:
     combinations: int | None = None
     undecided: int | None = None
     robustness: tuple[float, ...] | None = None
+    postures: tuple[Posture, ...] | None = None
+    gap: float = 0.0
 
     def but(self, **changes: Any) -> "ContactPlan":
         """Return the plan with some attributes changed."""
@@ -57,6 +62,7 @@ class ContactPlan:
 
 def write_plan(path: str | Path, plan: ContactPlan) -> None:
     """Write a plan as JSON, whole or not at all."""
+    postures = None if plan.postures is None else [posture_to_json(p) for p in plan.postures]
     certificate = None if plan.max_violation is None else {"max_violation_m": plan.max_violation}
     write_json(
         path,
@@ -75,6 +81,8 @@ def write_plan(path: str | Path, plan: ContactPlan) -> None:
             "seconds": plan.seconds,
             "combinations": plan.combinations,
             "undecided": plan.undecided,
+            "postures": postures,
+            "gap": plan.gap,
         },
     )
 
@@ -96,7 +104,7 @@ def read_plan(path: str | Path) -> ContactPlan:
     surfaces = content["surfaces"]
     if not isinstance(surfaces, list) or not all(isinstance(name, str) for name in surfaces):
         raise InputError(f"{path}: surfaces must be a list of surface names, one a phase")
-    com = content.get("com")
+    com, postures = content.get("com"), content.get("postures")
     certificate = content.get("certificate") or {}
     return ContactPlan(
         planner=str(content["planner"]),
@@ -111,8 +119,25 @@ def read_plan(path: str | Path) -> ContactPlan:
         seconds=float(content.get("seconds") or 0.0),
         combinations=content.get("combinations"),
         undecided=content.get("undecided"),
-        robustness=content.get("robustness") and tuple(content["robustness"]),
+        robustness=_robustness(path, content.get("robustness")),
+        postures=None if postures is None else _postures(path, postures),
+        gap=float(content.get("gap") or 0.0),
     )
+
+
+def _postures(path: str | Path, content: Any) -> tuple[Posture, ...]:
+    if not isinstance(content, list):
+        raise InputError(f"{path}: postures must be a list, or null")
+    where = f"{path}: posture"
+    return tuple(posture_from_json(f"{where} {n}", each) for n, each in enumerate(content))
+
+
+def _robustness(path: str | Path, content: Any) -> tuple[float, ...] | None:
+    if content is None:
+        return None
+    if not isinstance(content, list):
+        raise InputError(f"{path}: robustness must be a list of numbers [N], or null")
+    return tuple(_numbers(path, "robustness", content, (len(content),)).tolist())
 
 
 def _numbers(path: str | Path, key: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:

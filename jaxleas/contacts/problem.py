@@ -1,6 +1,7 @@
 """The contact problem: which foot moves when, onto which of which surfaces (T 5.1, B.1)."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -57,6 +58,7 @@ class ContactProblem:
         phases: in order; the last one's candidates are the goal.
         polytopes: how far a step and the centre of mass reach.
         foot_half_size: half length and half width of the sole [m].
+        parts: of surfaces that are part of another one: its name.
     """
 
     robot: str
@@ -66,10 +68,20 @@ class ContactProblem:
     phases: tuple[Phase, ...]
     polytopes: StepPolytopes
     foot_half_size: tuple[float, float]
+    parts: Mapping[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Return the number of phases."""
         return len(self.phases)
+
+    @property
+    def whole_surfaces(self) -> tuple[str, ...]:
+        """Names of the surfaces that are not part of another."""
+        return tuple(name for name in self.surfaces if name not in self.parts)
+
+    def whole(self, name: str) -> str:
+        """Return the name of the surface that a surface is, or is part of."""
+        return self.parts.get(name, name)
 
     def prefix(self, count: int) -> "ContactProblem":
         """Return the problem of the first `count` phases."""
@@ -83,10 +95,10 @@ class ContactProblem:
         )
 
     def without_guide(self) -> "ContactProblem":
-        """Return the contact-before-motion problem: any surface for any phase but the last.
+        """Return the contact-before-motion problem: any whole surface for any phase but the last.
 
         Orientations stay those of the phases; the last phase keeps its candidates, the goal.
         """
-        every = tuple(self.surfaces)
+        every = self.whole_surfaces
         free = [every] * (len(self) - 1)
         return self.with_candidates([*free, self.phases[-1].candidates])

@@ -58,6 +58,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
         phases=_phases(where, content["phases"], surfaces),
         polytopes=_polytopes(where, content, model),
         foot_half_size=_foot_half_size(where, content),
+        parts=_parts(where, content.get("parts"), surfaces),
     )
     require_feet_on_surfaces(problem, where)
     return problem
@@ -93,6 +94,7 @@ def write_problem(path: str | Path, problem: ContactProblem) -> None:
                 for name, each in named.items()
             },
             "foot_half_size": list(problem.foot_half_size),
+            "parts": dict(problem.parts),
         },
     )
 
@@ -187,6 +189,22 @@ def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
     if not all(0.0 < x < 1.0 for x in given):
         raise InputError(f"{where}: foot_half_size {given} is not between 0 and 1 m")
     return float(given[0]), float(given[1])
+
+
+def _parts(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> dict[str, str]:
+    if content is None:
+        return {}
+    if not isinstance(content, dict):
+        raise InputError(f"{where}: parts must be an object of name: the surface it is part of")
+    for part, whole in content.items():
+        if part not in surfaces or not isinstance(whole, str) or whole not in surfaces:
+            raise InputError(
+                f"{where}: parts says that {part!r:.60} is part of {whole!r:.60}, and one of them"
+                " is no surface of this problem"
+            )
+        if whole in content:
+            raise InputError(f"{where}: parts says that {whole!r:.60} is a whole and also a part")
+    return dict(content)
 
 
 def _vector(where: str, content: Any) -> np.ndarray:

@@ -1,6 +1,7 @@
-"""Rotations, boxes, polytopes, and whether polygons meet them."""
+"""Rotations, boxes, polytopes; whether polygons meet them, and what lies inside."""
 
 from jaxleas.geometry.boxes import Box
+from jaxleas.geometry.clipping import clip_polygon
 from jaxleas.geometry.intersections import pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.geometry.rotations import rotate_by_yaw, rotate_to_root, rotate_to_world, wrap_angle
@@ -8,6 +9,7 @@ from jaxleas.geometry.rotations import rotate_by_yaw, rotate_to_root, rotate_to_
 __all__ = [
     "Box",
     "Polytope",
+    "clip_polygon",
     "pack_polygons",
     "polygons_meet_polytope",
     "rotate_by_yaw",

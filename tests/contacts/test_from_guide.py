@@ -4,6 +4,7 @@ import pytest
 from jaxleas.contacts.from_guide import nearest_below, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
 from jaxleas.contacts.planners import plan_mip
+from jaxleas.contacts.problem import ContactProblem, Phase
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.files import write_npz
 from jaxleas.terrain.scene import Scene
@@ -27,6 +28,11 @@ def scene(**surfaces) -> Scene:
     return Scene({name: np.array(each, float) for name, each in surfaces.items()})
 
 
+def allowed(made: ContactProblem, phase: Phase) -> set[str]:
+    """Return the scene's surfaces of which a part is a candidate."""
+    return {made.whole(name) for name in phase.candidates}
+
+
 FLOOR = scene(floor=rectangle(-1, 5, -1, 1))
 
 
@@ -35,7 +41,7 @@ def test_one_step_for_each_kept_configuration() -> None:
     assert len(made) == 10
     assert [phase.foot for phase in made.phases] == ["LF", "RF"] * 5
     np.testing.assert_allclose([p.root[0] for p in made.phases], np.arange(1, 11) * 0.2)
-    assert all(phase.candidates == ("floor",) for phase in made.phases)
+    assert [allowed(made, phase) for phase in made.phases] == [{"floor"}] * 10
     for foot, side in (("LF", 0.0848), ("RF", -0.0848)):
         np.testing.assert_allclose(made.initial[foot].position, [0.0, side, 0.0], atol=1e-12)
 
@@ -62,7 +68,49 @@ def test_the_window_turns_with_the_root(yaw: float) -> None:
             }
         ),
     )
-    assert set(made.phases[-1].candidates) == {"floor", "inside"}
+    assert allowed(made, made.phases[-1]) == {"floor", "inside"}
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.2])
+def test_a_candidate_is_what_lies_in_the_window(yaw: float) -> None:
+    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    small = np.array(rectangle(0.26, 0.30, -0.02, 0.02, 0.01)) @ turn.T
+    strip = np.array(rectangle(-3.0, 3.0, -0.2, 3.0)) @ turn.T
+    guide = straight(0.56, yaw=yaw)
+    made = problem_from_guide(guide, Scene({"strip": strip, "small": small}))
+    assert set(made.whole_surfaces) == {"strip", "small"}
+    assert made.phases[0].candidates[0] == "small", "all of it: its own name"
+    for index, phase in enumerate(made.phases):
+        (part,) = [made.surfaces[n].vertices for n in phase.candidates if made.whole(n) == "strip"]
+        local = (part - phase.root) @ turn
+        np.testing.assert_allclose(local[:, :2].min(axis=0), [-0.4, -0.2], atol=1e-9)
+        np.testing.assert_allclose(local[:, :2].max(axis=0), [0.4, 0.4], atol=1e-9)
+        assert f"strip@{index}" in phase.candidates
+    free = made.without_guide()
+    assert set(free.phases[0].candidates) == {"strip", "small"}
+    assert free.phases[-1].candidates == made.phases[-1].candidates
+
+
+def test_the_window_holds_the_feet_near_the_guide() -> None:
+    """The only step lands 0.43 m beside the root: out of a window of 0.8 m, in one of 1 m."""
+    aside = scene(
+        start=rectangle(-0.2, 0.15, -0.2, 0.2),
+        left=rectangle(0.22, 0.6, 0.43, 0.8),
+        ahead=rectangle(0.9, 1.2, -0.3, 0.3),
+    )
+    guide = straight(0.6)
+    assert plan_mip(problem_from_guide(guide, aside, every=30, window=1.0)).feasible
+    plan = plan_mip(problem_from_guide(guide, aside, every=30, window=0.8))
+    assert (plan.status, plan.last_feasible_phase) == ("infeasible", -1)
+    assert "LF onto 'ahead'" in plan.reason
+    assert "which is none of its candidates" in plan.reason
+
+
+def test_a_surface_named_like_a_part_is_left_alone() -> None:
+    ground = np.array(rectangle(-1, 5, -1, 1), float)
+    made = problem_from_guide(straight(0.28), Scene({"a": ground, "a@0": ground - [0, 0, 0.1]}))
+    assert set(made.whole_surfaces) == {"a", "a@0"}
+    assert {made.whole(name) for name in made.phases[0].candidates} == {"a", "a@0"}
 
 
 def test_rom_candidates_are_the_moving_legs() -> None:
@@ -74,8 +122,8 @@ def test_rom_candidates_are_the_moving_legs() -> None:
     made = problem_from_guide(straight(0.6), sides, candidates="rom")
     for phase in made.phases:
         own, other = ("left", "right") if phase.foot == "LF" else ("right", "left")
-        assert own in phase.candidates
-        assert other not in phase.candidates
+        assert own in allowed(made, phase)
+        assert other not in allowed(made, phase)
 
 
 def test_a_walk_over_the_floor_can_be_planned_and_a_gap_cannot() -> None:

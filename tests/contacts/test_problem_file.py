@@ -54,6 +54,9 @@ DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
         (["foot_half_size"], [10, 6], ["foot_half_size", "not between 0 and 1 m"]),
         (["version"], 2, ["has version 2"]),
         (["phases"], KeyError, ["lacks phases"]),
+        (["parts"], ["stone_1"], ["parts must be an object"]),
+        (["parts"], {"stone_1": "moon"}, ["'stone_1' is part of 'moon'", "no surface"]),
+        (["parts"], {"stone_1": "start", "stone_2": "stone_1"}, ["'stone_1' is a whole and also"]),
     ],
 )
 def test_a_mistake_is_one_sentence_that_names_it(path: list, value, words: list[str]) -> None:
@@ -74,10 +77,11 @@ def test_polytopes_may_be_left_out_for_a_known_robot_only() -> None:
 
 
 def test_a_problem_survives_its_file(tmp_path) -> None:
-    before = problem(stones(0.1, rise=0.05))
+    before = problem({**stones(0.1, rise=0.05), "parts": {"stone_1": "start"}})
     write_problem(tmp_path / "p.json", before)
     after = read_problem(tmp_path / "p.json")
     assert list(after.surfaces) == list(before.surfaces)
+    assert after.parts == {"stone_1": "start"}
     for name, surface in before.surfaces.items():
         np.testing.assert_allclose(after.surfaces[name].vertices, surface.vertices, atol=1e-12)
     assert [(p.foot, p.yaw, p.candidates) for p in after.phases] == [

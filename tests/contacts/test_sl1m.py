@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
+from benchmarks.contacts.l1 import START, scenario_a, scenario_a2, scenario_b
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.planners import plan_sl1m
 from jaxleas.contacts.sl1m import attempt
 from jaxleas.types.errors import InputError
 from tests.contacts.worlds import content, problem, rectangle
-
-START = {"S1": rectangle(-0.3, 0.0, -0.2, 0.2)}
 
 
 def cost(asked, names: tuple[str, ...], points: np.ndarray) -> np.ndarray:
@@ -22,17 +21,6 @@ def cost(asked, names: tuple[str, ...], points: np.ndarray) -> np.ndarray:
     return total
 
 
-def scenario_a(gap: float) -> dict:
-    """Two steps to S4; for the first, S2 and S3, which are `gap` apart (T figs. 5.11, 5.12)."""
-    surfaces = {
-        **START,
-        "S2": rectangle(0.05, 0.25, -0.2, 0.3),
-        "S3": rectangle(0.25 + gap, 0.45 + gap, -0.2, 0.3),
-        "S4": rectangle(0.4, 0.8, -0.3, 0.2),
-    }
-    return content(surfaces, [["S2", "S3"], ["S4"]], model="feet")
-
-
 def test_scenario_a1_is_decided_by_the_relaxation() -> None:
     """The reach, 0.3 m, ends on S3's near edge or short of it: every optimum is on a surface."""
     found = attempt(problem(scenario_a(gap=0.0)), pruning=False)
@@ -41,37 +29,11 @@ def test_scenario_a1_is_decided_by_the_relaxation() -> None:
 
 def test_scenario_a2_needs_one_combination() -> None:
     """The cost is least between the surfaces: at the one place where three distances balance."""
-    surfaces = {
-        **START,
-        "S2": rectangle(0.0, 0.1, -0.2, 0.1),
-        "S3": rectangle(0.2, 0.3, -0.2, 0.1),
-        "S4": rectangle(0.35, 0.6, -0.3, 0.2),
-        "S5": rectangle(0.0, 0.3, 0.4, 0.6),
-    }
-    described = content(surfaces, [["S2", "S3", "S5"], ["S4"]], model="feet")
+    described = scenario_a2()
     found = attempt(problem(described), pruning=False)
     assert (found.outcome, found.undecided, found.combinations) == ("optimal", 1, 1)
     np.testing.assert_allclose(found.relaxed.footholds[0], [0.15, 0.15, 0.0], atol=1e-6)
     assert found.surfaces[0] in ("S2", "S3")  # equally near: the cheapest
-
-
-def scenario_b() -> dict:
-    """Five steps over ten surfaces; two of them among six islands (T fig. 5.13)."""
-    islands = {
-        f"S{4 + index}": rectangle(x, x + 0.12, y, y + 0.12)
-        for index, (x, y) in enumerate(
-            [(0.42, -0.25), (0.42, 0.1), (0.62, -0.3), (0.6, 0.16), (0.8, -0.22), (0.8, 0.1)]
-        )
-    }
-    surfaces = {
-        **START,
-        "S2": rectangle(0.05, 0.25, -0.05, 0.2),
-        "S3": rectangle(0.05, 0.25, 0.25, 0.5),
-        **islands,
-        "S10": rectangle(1.0, 1.4, -0.4, 0.4),
-    }
-    some = list(islands)
-    return content(surfaces, [["S2", "S3"], some[:2], some, some, ["S10"]], model="feet")
 
 
 def test_scenario_b_leaves_some_undecided_and_is_solved() -> None:

@@ -1,0 +1,1 @@
+"""The exact contact planners: verdicts, times, and the figures of the thesis."""

@@ -1,0 +1,70 @@
+"""Measure the exact contact planners, and draw the thesis's figures from what was measured.
+
+python -m benchmarks.contacts PART ... [--reference FILE --polytopes FILE] [--patience S]
+
+Each part replaces its own figures in benchmarks/results/contacts.json.
+"""
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from benchmarks.contacts.course import with_and_without_guide
+from benchmarks.contacts.pictures import draw_all
+from benchmarks.contacts.reference import on_reference
+from benchmarks.contacts.rows import Row
+from benchmarks.contacts.samples import against_samples_and_step
+from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from jaxleas.cli_guard import UsageError, run_guarded
+
+ROOT = Path(__file__).resolve().parents[2]
+OUT, IMAGES = ROOT / "benchmarks/results/contacts.json", ROOT / "docs/images"
+PARTS = ("reference", "course", "samples", "pictures")
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Measure the parts that are asked for."""
+    given = _parser().parse_args(arguments)
+    if "reference" in given.parts and not (given.reference and given.polytopes):
+        raise UsageError("the part reference needs --reference and --polytopes")
+    machine = this_machine()
+    for part in given.parts:
+        if part == "pictures":
+            draw_all(IMAGES, read_measurements(given.out))
+            continue
+        measured = []
+        for row in _rows(part, given):
+            measured.append(row.measurement(machine))
+            print(f"{row.name}: {measured[-1].value} {row.unit}", flush=True)
+        names = {each.name for each in measured}
+        before = read_measurements(given.out) if given.out.is_file() else []
+        kept = [each for each in before if each.name not in names]
+        write_measurements(given.out, [*kept, *measured])
+
+
+def _rows(part: str, given: argparse.Namespace) -> Iterator[Row]:
+    if part == "reference":
+        return on_reference(given.reference, given.polytopes)
+    if part == "course":
+        return with_and_without_guide(given.patience)
+    return against_samples_and_step(given.guides)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.contacts", description="Measure the exact contact planners."
+    )
+    add = parser.add_argument
+    add("parts", nargs="+", choices=PARTS)
+    add("--reference", type=Path, help="contact-problems.jsonl.gz")
+    add("--polytopes", type=Path, help="talos-polytopes.json")
+    add("--patience", type=float, default=40.0, help="for a plan without guide [s]")
+    add("--guides", type=int, default=10, help="up the stairs, a seed")
+    add("--out", type=Path, default=OUT)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.argv[0] = "benchmarks.contacts"  # as which errors are reported
+    sys.exit(run_guarded(lambda: main(sys.argv[1:])))

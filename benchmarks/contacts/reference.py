@@ -1,0 +1,69 @@
+"""Both planners on problems whose verdicts are known from outside."""
+
+import gzip
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.contacts.rows import Row, milliseconds
+from jaxleas.contacts import certify, plan_mip, plan_sl1m
+from jaxleas.contacts.problem_file import parse_problem
+from jaxleas.contacts.sl1m import attempt
+
+MODELS = ("two_com", "feet")
+
+
+def on_reference(problems: Path, polytopes: Path) -> Iterator[Row]:
+    """Judge both planners on the robust entries, a model after the other.
+
+    A problem's time is the median of three runs; the figures are over problems. The rival of
+    `sl1m_solved` is the published SL1M code, model feet.
+
+    Args:
+        problems: contact-problems.jsonl.gz.
+        polytopes: talos-polytopes.json.
+    """
+    with gzip.open(problems, "rt") as stream:
+        entries = [json.loads(line) for line in stream]
+    sets = json.loads(polytopes.read_text())["sets"]
+    for model in MODELS:
+        yield from _with_model(model, entries, sets)
+
+
+def _with_model(model: str, entries: list[dict], sets: dict) -> Iterator[Row]:
+    right, mip, sized, first, sl1m, violations = [], [], [], [], [], [0.0]
+    solved, false, published = 0, 0, 0
+    for entry in entries:
+        verdict = entry["verdict"][model]
+        if not verdict["robust"]:
+            continue
+        described = {**entry["problem"], "model": model}
+        described["polytopes"] = sets[described["polytopes"]]
+        asked, feasible = parse_problem(entry["id"], described), verdict["status"] == "feasible"
+        times, plan = milliseconds(lambda p=asked: plan_mip(p, diagnose=False), 3)
+        right.append(plan.feasible == feasible and plan.status in ("feasible", "infeasible"))
+        mip.append(float(np.median(times)))
+        if 17 <= len(asked) <= 19:
+            sized.append(mip[-1])
+        times, _ = milliseconds(lambda p=asked: attempt(p, max_combinations=0), 3)
+        first.append(float(np.median(times)))
+        times, quick = milliseconds(
+            lambda p=asked: plan_sl1m(p, diagnose=False, time_limit=20.0), 1
+        )
+        sl1m.append(times[0])
+        solved, false = solved + quick.feasible, false + (quick.feasible and not feasible)
+        violations += [certify(asked, each).metres for each in (plan, quick) if each.feasible]
+        said = entry["published_sl1m_feet"]
+        published += feasible and bool(said["success"] or said["l1_undecided"] == 0)
+    name = f"contacts_{model}"
+    yield Row(f"{name}_mip_right", "%", [100.0 * np.mean(right)], None, 100.0, "higher")
+    yield Row(f"{name}_mip_median", "ms", [np.median(mip)])
+    yield Row(f"{name}_mip_p90", "ms", [np.percentile(mip, 90)])
+    yield Row(f"{name}_mip_17_to_19_steps", "ms", sized, None, 60.0)
+    yield Row(f"{name}_sl1m_first_lp", "ms", [np.median(first)], None, 10.0)
+    yield Row(f"{name}_sl1m_median", "ms", [np.median(sl1m)])
+    yield Row(f"{name}_sl1m_solved", "problems", [solved], published, None, "higher")
+    yield Row(f"{name}_sl1m_false", "problems", [false])
+    yield Row(f"{name}_worst_violation", "m", [max(violations)], None, 1e-6)

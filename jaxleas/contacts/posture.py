@@ -1,0 +1,90 @@
+"""Postures: where both feet stand at a configuration of the guide, and what came before."""
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.problem import FEET, FootPose
+from jaxleas.types.errors import InputError
+
+How = Literal["start", "kept", "stepped", "repositioned"]
+"""The first; contacts kept while the root moved on; one made anew as the root moved on, or not."""
+
+
+@dataclass(frozen=True, eq=False)
+class Posture:
+    """Double support at one configuration of a guide path.
+
+    Attributes:
+        configuration: of the guide, counted from 0.
+        how: the posture came about.
+        moved: foot that was moved, "LF" or "RF"; None at the start and where contacts are kept.
+        feet: where each stands: a point on its surface [m], and the foot's yaw [rad].
+        surfaces: name of each foot's surface.
+        com: centre of mass in the world [m].
+    """
+
+    configuration: int
+    how: How
+    moved: str | None
+    feet: dict[str, FootPose]
+    surfaces: dict[str, str]
+    com: Float[np.ndarray, " 3"]
+
+
+def posture_to_json(posture: Posture) -> dict[str, Any]:
+    """Return a posture as JSON has it."""
+    feet = {
+        foot: {
+            "position": posture.feet[foot].position.tolist(),
+            "yaw": posture.feet[foot].yaw,
+            "surface": posture.surfaces[foot],
+        }
+        for foot in FEET
+    }
+    return {
+        "configuration": posture.configuration,
+        "how": posture.how,
+        "moved": posture.moved,
+        **feet,
+        "com": posture.com.tolist(),
+    }
+
+
+def posture_from_json(where: str, content: Any) -> Posture:
+    """Return the posture that JSON holds.
+
+    Raises:
+        InputError: it is none; `where` names it.
+    """
+    try:
+        read = Posture(
+            configuration=int(content["configuration"]),
+            how=content["how"],
+            moved=content["moved"],
+            feet={
+                foot: FootPose(_vector(content[foot]["position"]), float(content[foot]["yaw"]))
+                for foot in FEET
+            },
+            surfaces={foot: str(content[foot]["surface"]) for foot in FEET},
+            com=_vector(content["com"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{where} is no posture: it needs configuration, how, moved, com, and for LF and RF"
+            " position, yaw and surface, all numbers finite"
+        ) from error
+    if read.how not in get_args(How) or read.moved not in (None, *FEET):
+        raise InputError(
+            f"{where}: how must be one of {', '.join(get_args(How))}, and moved LF, RF or null"
+        )
+    return read
+
+
+def _vector(content: Any) -> np.ndarray:
+    vector = np.array(content, dtype=np.float64)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise ValueError(f"{content!r:.60} is not three finite numbers")
+    return vector
