@@ -72,8 +72,8 @@ class Navigator:
             seed: of the search.
         """
         goal = np.asarray(goal, dtype=np.float64)
-        direct = self._followed(start, goal[None], budget)
         budget.used += 1
+        direct = self._followed(start, goal[None], budget)
         if direct.reached or self.planner == "none":
             return direct
         ledger = Ledger(self.connector, budget)
