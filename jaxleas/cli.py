@@ -6,11 +6,12 @@ rather than tyro, which would have to import every room to show that help.
 
 import argparse
 import difflib
+import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import version
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.cli_options import add_options
@@ -27,6 +28,11 @@ COMMANDS = {
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
     "evaluate": ("jaxleas.evaluation.commands", "evaluate", "judge a policy on terrains unseen"),
     "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
+    "navigate": (
+        "jaxleas.guide.navigation_command",
+        "navigate",
+        "find a guide path over waypoints",
+    ),
     "export": (
         "jaxleas.export.commands",
         "export",
@@ -41,7 +47,11 @@ COMMANDS = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Answers a mistake with one sentence."""
+    """Answers a mistake with one sentence; takes `--from -1,2` for a place, not for two options."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"^-\.?\d[\d.,eE+-]*$")
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message}; see {self.prog} --help")

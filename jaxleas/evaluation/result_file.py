@@ -65,6 +65,8 @@ class CellResult(Strict):
     """Of the paths of those that reached the goal [m]."""
     detour: Length | None = None
     """Mean path length relative to straight lines, of those that reached the goal."""
+    waypoints: Length | None = None
+    """Mean number of waypoints between start and goal, of those that reached it by a roadmap."""
     areas: dict[str, AreaResult] = Field(default_factory=dict)
     """By start area: "near" and "far" of the transition."""
 

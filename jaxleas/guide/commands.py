@@ -98,14 +98,15 @@ def rollout(
 
 
 def steering_named(
-    steering: Steering, env: "SteeringEnv", policy: "SteeringPolicy | OnnxPolicy"
+    steering: Steering, env: "SteeringEnv", policy: "SteeringPolicy | OnnxPolicy | None"
 ) -> "SteeringMethod":
-    """Return the steering method of that name, as fast as the policy was trained to walk."""
+    """Return the steering method of that name, as fast as its task says; LEAS needs a policy."""
     from jaxleas.guide.leas import leas
     from jaxleas.guide.rb_kino import rb_kino
     from jaxleas.guide.rb_lin import rb_lin
 
     if steering == "leas":
+        assert policy is not None
         return leas(env, policy)
     baseline = {"kino": rb_kino, "lin": rb_lin}[steering]
     return baseline(env.config.limits, env.config.desired_speed)

@@ -133,7 +133,10 @@ def require_on_terrain(path: str | Path, queries: Sequence[Query], terrain: Heig
 
 
 def write_guide_paths(
-    path: str | Path, guide_paths: Sequence[GuidePath], reasons: Sequence[Reason]
+    path: str | Path,
+    guide_paths: Sequence[GuidePath],
+    reasons: Sequence[Reason],
+    waypoints: np.ndarray | None = None,
 ) -> None:
     """Write guide paths end to end as .npz, whole or not at all.
 
@@ -141,6 +144,7 @@ def write_guide_paths(
         path: the file.
         guide_paths: one for each query.
         reasons: why each ended.
+        waypoints: that a single path was led over, the goal last, x and y [m]; not read back.
     """
     lengths = [len(each) for each in guide_paths]
     write_npz(
@@ -153,6 +157,7 @@ def write_guide_paths(
         query=np.repeat(np.arange(len(lengths)), lengths),
         reached=np.array([reason == "reached" for reason in reasons]),
         reason=np.array(reasons, dtype=np.str_),
+        **({} if waypoints is None else {"waypoints": np.asarray(waypoints, np.float64)}),
     )
 
 

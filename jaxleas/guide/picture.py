@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +10,9 @@ from jaxleas.files import atomic_path
 from jaxleas.guide.files import Reason
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import GuidePath, InputError, Query
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 STARTS: dict[Reason, str] = {"reached": "gold", "invalid": "black", "stopped": "white"}
 PATH, GOAL = "tab:blue", "red"
@@ -21,6 +25,66 @@ def require_picture(path: str | Path) -> None:
     """Refuse a picture's name whose type cannot be drawn."""
     if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
+
+
+def draw_navigation(
+    path: str | Path,
+    terrain: HeightMap,
+    guide_path: GuidePath,
+    waypoints: np.ndarray,
+    goal: tuple[float, float],
+) -> None:
+    """Draw one path (blue), its headings, its numbered waypoints and the goal over the terrain.
+
+    Args:
+        path: of the picture (.png, .svg, .pdf).
+        terrain: that was walked on.
+        guide_path: that was found.
+        waypoints: it was led over, in order [m].
+        goal: it was to reach, x and y [m].
+
+    Raises:
+        InputError: the picture cannot be written, or is of an unknown type.
+    """
+    from jaxleas.terrain.draw import draw_height_map
+
+    require_picture(path)
+    ax = draw_height_map(terrain)
+    plot_navigation(ax, guide_path, waypoints, goal)
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, dpi=110)
+
+
+def plot_navigation(
+    ax: "Axes", guide_path: GuidePath, waypoints: np.ndarray, goal: tuple[float, float]
+) -> None:
+    """Draw a path, its headings, its numbered waypoints and the goal on these axes."""
+    ax.plot(*guide_path.position[:, :2].T, color=PATH, linewidth=1.6, zorder=3)
+    _draw_headings(ax, guide_path)
+    ax.scatter(*guide_path.position[0, :2], s=40, c="gold", edgecolors="black", zorder=5)
+    ax.scatter(*goal, s=40, c=GOAL, edgecolors="black", linewidths=0.5, zorder=6)
+    for number, place in enumerate(waypoints, start=1):
+        if not np.allclose(place, goal):
+            ax.scatter(*place, s=22, c="white", edgecolors=PATH, zorder=5)
+            ax.annotate(
+                str(number), place, xytext=(5, 5), textcoords="offset points", color=PATH, zorder=7
+            )
+
+
+def _draw_headings(ax: "Axes", guide_path: GuidePath) -> None:
+    at = slice(0, None, ARROWS_EVERY)
+    ax.quiver(
+        *guide_path.position[at, :2].T,
+        np.cos(guide_path.yaw[at]),
+        np.sin(guide_path.yaw[at]),
+        angles="xy",
+        scale_units="xy",
+        scale=1.0 / ARROW_LENGTH,
+        width=0.004,
+        zorder=4,
+    )
 
 
 def draw_guide_paths(
@@ -49,17 +113,7 @@ def draw_guide_paths(
     shown = list(zip(guide_paths, reasons, queries, strict=True))[:MOST_PATHS]
     for guide_path, _, _ in shown:
         ax.plot(*guide_path.position[:, :2].T, color=PATH, linewidth=1.2, zorder=3)
-        at = slice(0, None, ARROWS_EVERY)
-        heading = np.cos(guide_path.yaw[at]), np.sin(guide_path.yaw[at])
-        ax.quiver(
-            *guide_path.position[at, :2].T,
-            *heading,
-            angles="xy",
-            scale_units="xy",
-            scale=1.0 / ARROW_LENGTH,
-            width=0.004,
-            zorder=4,
-        )
+        _draw_headings(ax, guide_path)
     for reason, colour in STARTS.items():
         starts = [query.position[:2] for _, each, query in shown if each == reason]
         if starts:

@@ -1,0 +1,190 @@
+"""The function behind `jaxleas navigate`."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from jaxleas.guide.commands import Steering, steering_named
+from jaxleas.types import InputError, RootMotion
+
+if TYPE_CHECKING:
+    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.guide.roadmaps import Navigation, Navigator, Places
+    from jaxleas.guide.steering_method import SteeringMethod
+
+
+def navigate(
+    *,
+    from_: str,
+    to: str,
+    terrain: Path,
+    steering: Steering = "leas",
+    planner: Literal["rrt", "prm", "none"] = "rrt",
+    policy: Path | None = None,
+    limit: float = 20.0,
+    connections: int | None = None,
+    seed: int = 0,
+    out: Path,
+    picture: Path | None = None,
+    resolution: float | None = None,
+    up: Literal["x", "y", "z"] = "z",
+    scale: float = 1.0,
+    z_min: float | None = None,
+    z_max: float | None = None,
+    zero_is_void: bool = False,
+) -> None:
+    """Find a guide path between two places of any terrain, over waypoints where it needs them.
+
+    Args:
+        from_: x,y or x,y,yaw of the start [m, rad]; without yaw the robot faces the goal if it can.
+        to: x,y of the goal [m].
+        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain.
+        planner: rrt or prm look for waypoints if the goal alone will not do; none = the goal alone.
+        policy: a run folder, a policy.npz or an .onnx; needed for leas, whose task the others
+            share if it is given.
+        limit: after which the best partial path is written [s].
+        connections: that the search may ask for; by default as many as the time allows.
+        seed: of the search.
+        out: the guide path and its waypoints, .npz.
+        picture: draw the path and its waypoints from above (.png, .svg, .pdf).
+        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
+        up: of a mesh, the axis that points up.
+        scale: of a mesh, metres a unit.
+        z_min: of a .png, the height of black [m].
+        z_max: of a .png, the height of white [m].
+        zero_is_void: of a .png, whether black means no ground.
+
+    Raises:
+        InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
+    """
+    from jaxleas.guide.picture import draw_navigation, require_picture
+    from jaxleas.guide.roadmaps import Budget, Places
+    from jaxleas.guide.roadmaps.exact import judge_exactly, scene_of
+    from jaxleas.guide.roadmaps.search import import_ompl
+    from jaxleas.terrain.importers import import_terrain
+
+    start, yaw = _place("--from", from_, may_turn=True)
+    goal, _ = _place("--to", to, may_turn=False)
+    Budget(limit, connections)  # refused before anything is loaded
+    if out.suffix != ".npz":
+        raise InputError(f"--out {out}: guide paths are written as .npz")
+    if picture is not None:
+        require_picture(picture)
+    if planner != "none":
+        import_ompl()
+    env, method = _steering(steering, policy)
+    ground = import_terrain(
+        terrain,
+        resolution=resolution,
+        up=up,
+        scale=scale,
+        z_min=z_min,
+        z_max=z_max,
+        zero_is_void=zero_is_void,
+    )
+    places = Places(env, ground)
+    motion = start_motion(places, start, goal, yaw)
+    places.require_valid("--to", goal, None)
+    navigator = make_navigator(places, method, steering, planner)
+    found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
+    scene = scene_of(terrain, up, scale)
+    verdict = None if scene is None else judge_exactly(env.robot, scene, found.path)
+    _write(out, found)
+    if picture is not None:
+        draw_navigation(picture, ground, found.path, found.waypoints, goal)
+    print(_sentence(out, found, goal, "" if verdict is None else f"; {verdict}"))
+
+
+def make_navigator(
+    places: "Places", method: "SteeringMethod", steering: Steering, planner: str
+) -> "Navigator":
+    """Return a navigator tuned for a steering method.
+
+    LEAS gets near a waypoint and around things on the way: long edges, waypoints reached within
+    the goal's radius. The baselines get exactly there, and only where the straight way is free:
+    short edges, followed to the centimetre, because a corner cut is a way that was never tried.
+    """
+    from jaxleas.guide.roadmaps.connections import Connector
+    from jaxleas.guide.roadmaps.navigation import Navigator
+
+    config = places.env.config
+    reach, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
+    # Twice the time of the straight way, and time to turn around.
+    straight = reach / (config.desired_speed * config.limits.time_step)
+    turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
+    steps = math.ceil(1.25 * straight + turn)
+    return Navigator(Connector(places, method, radius, steps), planner, reach)  # type: ignore[arg-type]
+
+
+def start_motion(
+    places: "Places", start: tuple[float, float], goal: tuple[float, float], yaw: float | None
+) -> RootMotion:
+    """Return a robot at rest at the start: at the yaw asked for, else as nearly facing the goal
+    as is valid.
+
+    Raises:
+        InputError: it cannot stand there.
+    """
+    from jaxleas.guide.roadmaps.places import HEADINGS
+
+    if yaw is None:
+        facing = math.atan2(goal[1] - start[1], goal[0] - start[0])
+        headings = facing + np.array(sorted(HEADINGS, key=abs))
+        valid = places.valid(np.tile(start, (len(headings), 1)), headings)
+        yaw = float(headings[np.argmax(valid)]) if valid.any() else None
+    pose = places.require_valid("--from", start, yaw)
+    motion = places.standing(np.array([start]), np.array([pose.yaw]))
+    return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])
+
+
+def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float], float | None]:
+    numbers = []
+    for part in text.split(","):
+        try:
+            numbers.append(float(part))
+        except ValueError:
+            numbers.append(math.nan)
+    wanted = "x,y or x,y,yaw" if may_turn else "x,y"
+    if len(numbers) not in ((2, 3) if may_turn else (2,)) or not all(map(math.isfinite, numbers)):
+        raise InputError(f"{option} {text!r} is not {wanted}: give finite numbers in metres")
+    return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
+
+
+def _steering(steering: Steering, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
+    from jaxleas.envs.steering.config import SteeringConfig
+    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.guide.loading import load_policy
+
+    if policy is None:
+        if steering == "leas":
+            raise InputError("--steering leas needs --policy: a run folder, a .npz or an .onnx")
+        env = SteeringEnv(SteeringConfig())
+        return env, steering_named(steering, env, None)
+    walker = load_policy(policy)
+    env = SteeringEnv(walker.config)
+    return env, steering_named(steering, env, walker)
+
+
+def _write(out: Path, found: "Navigation") -> None:
+    from jaxleas.guide.files import write_guide_paths
+
+    write_guide_paths(out, [found.path], [found.reason], found.waypoints)
+
+
+def _sentence(out: Path, found: "Navigation", goal: tuple[float, float], verdict: str) -> str:
+    count = len(found.waypoints) - 1
+    between = f"{count} waypoint{'' if count == 1 else 's'} on the way" if count else "no waypoints"
+    effort = f"{found.connections} connections, {found.seconds:.1f} s"
+    if found.reached:
+        return (
+            f"{out}: reached, {found.path.length:.2f} m in {found.path.time[-1]:.0f} s of walking,"
+            f" {between} ({effort}){verdict}"
+        )
+    left = math.dist(found.path.position[-1, :2], goal)
+    return (
+        f"{out}: the goal was not reached within the limit ({effort}); the best partial path ends"
+        f" {left:.2f} m before it{verdict}"
+    )

@@ -1,0 +1,202 @@
+"""From start to goal by any steering method, with waypoints where it needs them."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import networkx
+import numpy as np
+from jaxtyping import Float, Int
+
+from jaxleas.guide.files import Reason
+from jaxleas.guide.roadmaps.budget import Budget
+from jaxleas.guide.roadmaps.connections import Connector
+from jaxleas.guide.roadmaps.ledger import Key, Ledger, key_of
+from jaxleas.guide.roadmaps.places import on_host
+from jaxleas.guide.roadmaps.samples import Samples
+from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
+from jaxleas.types import GuidePath, RootMotion
+
+PlannerName = Literal["rrt", "prm", "none"]
+
+
+@dataclass(frozen=True)
+class Navigation:
+    """How one query was answered.
+
+    Attributes:
+        path: to the goal, or the best partial one.
+        reason: "reached"; else why the path ends.
+        waypoints: places the robot was sent to, one after another, the goal last [m].
+        connections: that the search asked for.
+        seconds: it took.
+    """
+
+    path: GuidePath
+    reason: Reason
+    waypoints: Float[np.ndarray, "W 2"]
+    connections: int
+    seconds: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether the path leads to the goal, every configuration valid."""
+        return self.reason == "reached"
+
+
+@dataclass(frozen=True)
+class Navigator:
+    """A steering method and a search for the waypoints it needs.
+
+    Attributes:
+        connector: the steering method on its terrain.
+        planner: that looks for waypoints; "none": the goal alone.
+        reach: length of an edge of a tree at most [m].
+    """
+
+    connector: Connector
+    planner: PlannerName
+    reach: float
+
+    def navigate(
+        self, start: RootMotion, goal: Float[np.ndarray, " 2"], budget: Budget, seed: int = 0
+    ) -> Navigation:
+        """Find a guide path to the goal; without waypoints if there is one.
+
+        A path is returned as reached only after the steering method has followed it from start to
+        goal without a break; a connection that fails then is taken out, and the search goes on.
+
+        Args:
+            start: root motion, without a batch axis.
+            goal: x, y [m].
+            budget: after which the best partial path is returned.
+            seed: of the search.
+        """
+        goal = np.asarray(goal, dtype=np.float64)
+        direct = self._followed(start, goal[None], budget)
+        budget.used += 1
+        if direct.reached or self.planner == "none":
+            return direct
+        ledger = Ledger(self.connector, budget)
+        while not budget.spent:
+            places = self._search(ledger, start, goal, seed)
+            if places is None:
+                break
+            waypoints = np.array(places[1:])
+            whole = self._followed(start, waypoints, budget)
+            if whole.reached:
+                return self._shortened(start, whole, budget)
+            passed = passages(whole.path, waypoints, self.connector.radius)
+            failed = min(len(passed), len(waypoints) - 1)
+            ledger.banned.add((places[failed], places[failed + 1]))
+            ledger.banned.add((places[failed + 1], places[failed]))
+        return self._partial(ledger, start, goal, direct, budget)
+
+    def _search(
+        self, ledger: Ledger, start: RootMotion, goal: np.ndarray, seed: int
+    ) -> list[Key] | None:
+        # Begun anew with the same samples: what was tried before is remembered by the ledger.
+        places = self.connector.places
+        target = key_of(goal)
+        if self.planner == "rrt":
+            tree = Rrt(ledger, Samples(places, seed, goal), start, self.reach)
+            return search_rrt(tree, target)
+        here = key_of(np.asarray(start.position))
+        return search_prm(Prm(ledger, Samples(places, seed), (here, target)), here, target)
+
+    def _shortened(self, start: RootMotion, whole: Navigation, budget: Budget) -> Navigation:
+        """Leave out waypoints: the fewest that still lead there, if the method follows them."""
+        count = len(whole.waypoints)
+        if count == 1:
+            return whole
+        passed = passages(whole.path, whole.waypoints, self.connector.radius)
+        motions = [start, *(motion_at(whole.path, index) for index in passed[:-1])]
+        pairs = [(i, j) for i in range(count) for j in range(i + 2, count + 1)]
+        tried = self.connector.connect(
+            [motions[i] for i, _ in pairs], whole.waypoints[[j - 1 for _, j in pairs]]
+        )
+        jumps = networkx.DiGraph([(i, i + 1) for i in range(count)])
+        jumps.add_edges_from(
+            pair for pair, reached in zip(pairs, tried.reached, strict=True) if reached
+        )
+        kept = networkx.shortest_path(jumps, 0, count)[1:]
+        if len(kept) == count:
+            return whole
+        shorter = self._followed(start, whole.waypoints[[j - 1 for j in kept]], budget)
+        return shorter if shorter.reached else whole
+
+    def _partial(
+        self,
+        ledger: Ledger,
+        start: RootMotion,
+        goal: np.ndarray,
+        direct: Navigation,
+        budget: Budget,
+    ) -> Navigation:
+        """Return the valid path that ends nearest to the goal, of all that are known."""
+        known = networkx.DiGraph(ledger.reached())
+        here = key_of(np.asarray(start.position))
+        candidates = [direct]
+        if here in known:
+            ways = networkx.single_source_shortest_path(known, here)
+            nearest = min(ways, key=lambda place: float(np.hypot(*(np.array(place) - goal))))
+            if len(ways[nearest]) > 1:
+                way = self._followed(start, np.array(ways[nearest][1:]), budget)
+                if way.reached and nearest == key_of(goal):  # a guess of the ledger's, unasked
+                    return self._shortened(start, way, budget)
+                candidates.append(way)
+        best = min(
+            (replace(each, path=part_towards(each.path, goal)) for each in candidates),
+            key=lambda each: float(np.hypot(*(each.path.position[-1, :2] - goal))),
+        )
+        return replace(
+            best, reason="stopped", connections=budget.used, seconds=round(budget.elapsed, 3)
+        )
+
+    def _followed(self, start: RootMotion, waypoints: np.ndarray, budget: Budget) -> Navigation:
+        path, reached, invalid = self.connector.follow(start, waypoints)
+        reason: Reason = "reached" if reached else "invalid" if invalid else "stopped"
+        return Navigation(path, reason, waypoints, budget.used, round(budget.elapsed, 3))
+
+
+def passages(
+    path: GuidePath, waypoints: Float[np.ndarray, "W 2"], radius: float
+) -> Int[np.ndarray, " passed"]:
+    """Return when each waypoint was passed, in order, up to the first that was not.
+
+    Args:
+        path: that was walked.
+        waypoints: one after another [m].
+        radius: within which one is passed [m].
+
+    Returns:
+        Indices of configurations.
+    """
+    passed: list[int] = []
+    index = 0
+    for waypoint in waypoints:
+        offset = path.position[index:, :2].astype(np.float64) - waypoint
+        close = np.flatnonzero(np.hypot(*offset.T) <= radius + 1e-6)
+        if not len(close):
+            break
+        index += int(close[0])
+        passed.append(index)
+    return np.array(passed, dtype=np.int64)
+
+
+def motion_at(path: GuidePath, index: int) -> RootMotion:
+    """Return the root motion of one configuration of a path."""
+    return on_host(path.position[index], path.velocity[index], path.yaw[index])
+
+
+def part_towards(path: GuidePath, goal: Float[np.ndarray, " 2"]) -> GuidePath:
+    """Return a path up to the valid configuration nearest to the goal; at least its first one."""
+    valid = len(path) if path.valid.all() else max(1, int(np.argmin(path.valid)))
+    offset = path.position[:valid, :2].astype(np.float64) - goal
+    count = 1 + int(np.argmin(np.hypot(*offset.T)))
+    return GuidePath(
+        path.time[:count],
+        path.position[:count],
+        path.yaw[:count],
+        path.velocity[:count],
+        path.valid[:count],
+    )
