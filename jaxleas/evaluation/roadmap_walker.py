@@ -93,7 +93,7 @@ def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: S
         return np.stack([getattr(path, name)[row] for path, row in zip(paths, rows, strict=True)])
 
     valid = padded("valid").astype(bool)
-    invalid = ~valid.all(axis=1)
+    invalid = np.any(~valid, axis=1)
     return Walk(
         starts=starts,
         position=padded("position"),
@@ -102,5 +102,5 @@ def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: S
         valid=valid,
         end=end,
         reached=reached & ~invalid,
-        invalid=invalid,
+        invalid=np.asarray(invalid),
     )
