@@ -39,6 +39,7 @@ def test_paths_of_any_length_make_one_walk():
     assert len(walk.guide_path(0, 0.2)) == 3
 
 
+@pytest.mark.slow
 def test_a_roadmap_leads_around_the_hole_where_the_straight_way_does_not(env):
     pytest.importorskip("ompl")
     suite = make_suite("hole", 4)
