@@ -9,9 +9,13 @@ from pathlib import Path
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Walker, walker
 from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
+from jaxleas.evaluation.roadmap_walker import roadmap_walker
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
+from jaxleas.guide.roadmaps.search import import_ompl
 from jaxleas.types.errors import InputError
+
+ROADMAP = "rb_kino_rrt"
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ def make_contenders(
         InputError: a name is unknown or taken, or a policy cannot be used.
     """
     policies = {} if policies is None else policies
-    names = [*BASELINES, POLICY, *policies]
+    names = [*BASELINES, ROADMAP, POLICY, *policies]
     for name in policies:
         if names.count(name) > 1:
             raise InputError(f"the method {name!r} is there already; give the policy another name")
@@ -58,6 +62,9 @@ def make_contenders(
         if name in policies:
             walkers[name] = _policy_walker(policies[name])
             fingerprints[name] = fingerprint_of(policies[name])
+        elif name == ROADMAP:
+            import_ompl()
+            walkers[name] = roadmap_walker(candidate.env, candidate.methods["rb_kino"], "kino")
         else:
             walkers[name] = walker(candidate.env, candidate.methods[name])
     return Contenders(walkers, fingerprints)

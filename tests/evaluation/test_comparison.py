@@ -91,7 +91,12 @@ def test_what_has_changed_is_judged_again_and_nothing_else(run, flat_suite, tmp_
 
 def test_methods_are_chosen_by_name(run, tmp_path):
     candidate = load_candidate(run)
-    assert list(make_contenders(candidate).walkers) == ["rb_lin", "rb_kino", "leas_p1"]
+    assert list(make_contenders(candidate).walkers) == [
+        "rb_lin",
+        "rb_kino",
+        "rb_kino_rrt",
+        "leas_p1",
+    ]
     with pytest.raises(InputError, match="did you mean 'rb_kino'"):
         make_contenders(candidate, wanted=["rb_kin"])
     with pytest.raises(InputError, match="there already"):

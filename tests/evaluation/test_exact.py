@@ -134,5 +134,7 @@ def test_the_sampling_planner_follows_a_walk_but_no_leap(env, flat_suite):
     assert leap.reached == steps.reached == 1.0
     assert (leap.planned, steps.planned) == (0.0, 1.0)
     assert leap.mean_step is None
+    assert steps.robustness is not None
+    assert steps.mean_step is not None
     assert steps.robustness > 5.0
     assert 0.05 < steps.mean_step < 0.3

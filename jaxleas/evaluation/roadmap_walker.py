@@ -1,0 +1,106 @@
+"""A steering method with a roadmap as a walker: RB-Kino + RRT (T 3.4.2, table 4.3)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Bool
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import Walker
+from jaxleas.evaluation.judge import Walk
+from jaxleas.evaluation.starts import Grounds, Starts
+from jaxleas.guide.navigation_command import Steering, make_navigator
+from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
+from jaxleas.guide.roadmaps.navigation import motion_at
+from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.types import GuidePath, RootMotion
+
+CONNECTIONS = 200
+"""That a search may try between two waypoints: a budget that is the same on every machine."""
+HOURS = 36_000.0
+
+
+def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: Steering) -> Walker:
+    """Return a steering method that looks for waypoints by RRT where it needs them.
+
+    Args:
+        env: says what is valid.
+        method: that connects waypoints.
+        steering: what kind it is: how far an edge may reach.
+    """
+
+    def walks(grounds: Grounds, starts: Starts, steps: int) -> Walk:
+        navigators: dict[int, Navigator] = {}
+        found = []
+        for number, index in enumerate(np.asarray(starts.map_index).tolist()):
+            if index not in navigators:
+                places = Places(env, grounds.maps[index])
+                navigators[index] = make_navigator(places, method, steering, "rrt")
+            found.append(_navigate(navigators[index], starts, number, steps))
+        return stack([path for path, _ in found], np.array([each for _, each in found]), starts)
+
+    return walks
+
+
+def _navigate(
+    navigator: Navigator, starts: Starts, number: int, steps: int
+) -> tuple[GuidePath, bool]:
+    """Navigate over a start's waypoints; return the path, and whether it leads to the last one."""
+    motion = RootMotion(
+        *(
+            np.asarray(getattr(starts.motion, name))[number]
+            for name in ("position", "velocity", "yaw")
+        )
+    )
+    parts: list[GuidePath] = []
+    for waypoint in np.asarray(starts.waypoints)[number]:
+        budget = Budget(HOURS, CONNECTIONS)
+        leg: Navigation = navigator.navigate(motion, waypoint[:2], budget, seed=number)
+        parts.append(leg.path)
+        motion = motion_at(leg.path, len(leg.path) - 1)
+        if not leg.reached:
+            return joined(parts), False
+    path = joined(parts)
+    return path, len(path) - 1 <= steps
+
+
+def joined(parts: Sequence[GuidePath]) -> GuidePath:
+    """Return guide paths as one, each but the first without its first configuration."""
+    kept = [(part, slice(0 if index == 0 else 1, None)) for index, part in enumerate(parts)]
+
+    def rows(name: str) -> np.ndarray:
+        return np.concatenate([getattr(part, name)[some] for part, some in kept])
+
+    gaps = np.concatenate([np.diff(part.time) for part in parts])
+    return GuidePath(
+        time=np.concatenate([[0.0], np.cumsum(gaps)]),
+        position=rows("position"),
+        yaw=rows("yaw"),
+        velocity=rows("velocity"),
+        valid=rows("valid"),
+    )
+
+
+def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts) -> Walk:
+    """Return guide paths as the walks of a cell; the last configuration of each is repeated.
+
+    A path that ends before its goal is a valid one as far as it goes: it has stopped.
+    """
+    end = np.array([len(path) - 1 for path in paths])
+    rows = np.minimum(np.arange(end.max() + 1), end[:, None])
+
+    def padded(name: str) -> np.ndarray:
+        return np.stack([getattr(path, name)[row] for path, row in zip(paths, rows, strict=True)])
+
+    valid = padded("valid").astype(bool)
+    invalid = np.any(~valid, axis=1)
+    return Walk(
+        starts=starts,
+        position=padded("position"),
+        yaw=padded("yaw"),
+        velocity=padded("velocity"),
+        valid=valid,
+        end=end,
+        reached=reached & ~invalid,
+        invalid=np.asarray(invalid),
+    )
