@@ -222,7 +222,9 @@ class _Session:
             if bad:
                 where = ", ".join(name.removeprefix("finite/") for name in bad)
                 step = update * self.trainer.config.ppo.batch
-                folder = "process 0's run folder" if self.desk is None else self.desk.run.checkpoints
+                folder = (
+                    "process 0's run folder" if self.desk is None else self.desk.run.checkpoints
+                )
                 raise NonFiniteError(
                     f"update {update} (step {step}) made non-finite numbers in: {where}; the last"
                     f" good state is kept in {folder}: a smaller learning rate or"

@@ -102,7 +102,7 @@ def test_devices_that_are_not_there_or_cannot_share_evenly_are_refused(monkeypat
         choose_devices(3, tiny().ppo)
     several = choose_devices("all", tiny().ppo).mesh.devices.tolist() * 3
     monkeypatch.setattr("jax.devices", lambda: several)
-    with pytest.raises(InputError, match="3 devices cannot share the robots evenly.*--devices 2"):
+    with pytest.raises(InputError, match=r"3 devices cannot share the robots evenly.*--devices 2"):
         choose_devices("all", tiny().ppo)  # 32 robots a minibatch
 
 
@@ -128,7 +128,7 @@ def test_a_wrong_number_of_devices_is_refused(given, monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT))
     import train
 
-    with pytest.raises(UsageError, match="--devices is .*, but it should be all or a number"):
+    with pytest.raises(UsageError, match=r"--devices is .*, but it should be all or a number"):
         train.main(["configs/leas_p1.yaml", f"--devices={given}"])
 
 
