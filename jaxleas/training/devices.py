@@ -34,7 +34,7 @@ class Devices:
     mesh: Mesh
 
     @classmethod
-    def of(cls, devices: Sequence[jax.Device]) -> "Devices":
+    def of(cls, devices: Sequence[Any]) -> "Devices":
         """Return these devices in a row."""
         return cls(Mesh(np.array(devices), (AXIS,)))
 
@@ -56,9 +56,8 @@ class Devices:
     def state(self) -> TrainState:
         """How a train state lies: a sharding for each of its fields."""
         names = [field.name for field in dataclasses.fields(TrainState)]
-        return TrainState(
-            **{name: self.divided if name in DIVIDED else self.whole for name in names}
-        )
+        layout: Any = {name: self.divided if name in DIVIDED else self.whole for name in names}
+        return TrainState(**layout)
 
     def divide_robots(self, minibatch: Tree) -> Tree:
         """Divide a minibatch [time, robots, ...] by robot, so that each device learns from a part.
