@@ -1,6 +1,6 @@
 """Measure how fast jaxleas is on this machine.
 
-python -m benchmarks [--only NAME ...] [--quick] [--runs N] [--json OUT.json]
+python -m benchmarks [--only NAME ...] [--quick] [--runs N] [--json OUT.json | --into FILE.json]
 """
 
 import argparse
@@ -30,7 +30,12 @@ def main(arguments: Sequence[str]) -> None:
 
     from benchmarks.comparison import by_name, compare
     from benchmarks.context import Context
-    from benchmarks.measurements import read_measurements, this_machine, write_measurements
+    from benchmarks.measurements import (
+        merge,
+        read_measurements,
+        this_machine,
+        write_measurements,
+    )
     from benchmarks.rival import default_python, require_rival
     from benchmarks.suite import choose, measure
     from benchmarks.table import show
@@ -47,13 +52,20 @@ def main(arguments: Sequence[str]) -> None:
     _require_device(given.device)
     if given.rivals:
         require_rival(given.rivals)
-    if given.json:
-        _require_writable(given.json)
+    target = given.json or given.into
+    if target:
+        _require_writable(target)
+    before = read_measurements(given.into) if given.into and given.into.exists() else []
     if given.check or given.baseline != BASELINE or BASELINE.is_file():
         baseline = by_name(read_measurements(given.baseline))
     else:
         baseline = {}
     machine = this_machine()
+    if any(each.machine != machine for each in before):
+        raise InputError(
+            f"--into {given.into}: it holds figures of {before[0].machine!r}, and this is"
+            f" {machine!r}: one file is of one machine, so give another"
+        )
     elsewhere = sorted({each.machine for each in baseline.values()} - {machine})
     if elsewhere and given.check:
         raise InputError(
@@ -72,8 +84,9 @@ def main(arguments: Sequence[str]) -> None:
         print(f"The baseline was measured on {elsewhere[0]}: compare with care.")
     if rivals is None:
         print("No rival was measured: see docs/performance.md.")
-    if given.json:
-        write_measurements(given.json, measurements)
+    if target:
+        order = [metric.name for metric in choose([], quick=False)]
+        write_measurements(target, merge(measurements, before, order))
     worse = [m.name for m, c in zip(metrics, comparisons, strict=True) if c.verdict == "worse"]
     if worse and given.check:
         raise SlowerError(f"worse than the baseline by more than the tolerance: {', '.join(worse)}")
@@ -108,7 +121,10 @@ def _parser() -> argparse.ArgumentParser:
     add("--list", action="store_true", help="list the metrics instead of measuring")
     add("--quick", action="store_true", help="fewer metrics, two runs")
     add("--runs", type=_positive, metavar="N", help="of each metric; the median counts (5)")
-    add("--json", type=Path, metavar="OUT.json", help="write the measurements")
+    files = parser.add_mutually_exclusive_group()
+    files.add_argument("--json", type=Path, metavar="OUT.json", help="write the measurements")
+    text = "put them into a file, in place of those of the same names: measure piece by piece"
+    files.add_argument("--into", type=Path, metavar="FILE.json", help=text)
     add("--baseline", type=Path, default=BASELINE, metavar="FILE", help="to compare with")
     add("--check", action="store_true", help="exit code 1 where worse than the baseline")
     rivals = parser.add_mutually_exclusive_group()

@@ -122,6 +122,21 @@ def read_measurements(path: str | Path) -> list[Measurement]:
     return measurements
 
 
+def merge(
+    measurements: Sequence[Measurement], into: Sequence[Measurement], order: Sequence[str]
+) -> list[Measurement]:
+    """Put measurements in place of those of the same names; what else there was stays.
+
+    Args:
+        measurements: the new ones.
+        into: the old ones.
+        order: of names; what it does not name comes last.
+    """
+    places = {name: place for place, name in enumerate(order)}
+    merged = {each.name: each for each in (*into, *measurements)}
+    return sorted(merged.values(), key=lambda each: places.get(each.name, len(places)))
+
+
 def this_machine() -> str:
     """Return what the figures were measured on: processor, cores, and devices beside it."""
     name = platform.processor() or platform.machine()

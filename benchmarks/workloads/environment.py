@@ -1,11 +1,14 @@
-"""Steps a second of the environment alone, under random actions, restarts included."""
+"""Steps a second of the environment alone, under random actions, restarts included.
+
+One jitted scan over donated state, as in training; the host waits once a run, not once a call.
+"""
 
 from functools import partial
 
 import jax
 from jax import Array
 
-from benchmarks.context import Context
+from benchmarks.context import Context, changed
 from benchmarks.measurements import Figure, Metric
 from benchmarks.timing import seconds_a_call
 from benchmarks.workloads.workload import Workload
@@ -14,27 +17,45 @@ from jaxleas.envs.steering.layout import ICRA81, THESIS144
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts, restart_where, take
 from jaxleas.envs.steering.world import World
+from jaxleas.training.worlds import training_world
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
 QUICK_SIZES = (256, 4096)
+ARENAS, ARENA_ROBOTS = (16, 256), 4096
 
 
 def _measure(layout: str, robots: int, context: Context) -> dict[str, Figure]:
-    settings = {"observation": layout}
-    env = SteeringEnv(context.config.env.model_copy(update=settings))
-    ppo = context.config.ppo
-    walk = _make_walk(env, ppo.unroll, robots, ppo.candidates)
-    held = [_begin(env, context.world, robots)]
-
-    def call() -> Array:
-        state, total = walk(context.world, held[0])
-        held[0] = state
-        return total
-
-    steps = robots * ppo.unroll
-    runs = [steps / seconds for seconds in seconds_a_call(call, context.runs)]
+    env = SteeringEnv(context.config.env.model_copy(update={"observation": layout}))
+    runs = _rates(env, context.world, robots, context)
     rival = context.rival.figure("env") if layout == context.env.layout.name else None
     return {_name(layout, robots): Figure(runs, context.env_limit(env, robots), rival)}
+
+
+def _of_arenas(arenas: int, context: Context) -> dict[str, Figure]:
+    world = training_world(changed(context.config, terrain={"arenas": arenas}))
+    # The roofs were measured over the shipped terrain: no limit.
+    return {f"env_arenas_{arenas}": Figure(_rates(context.env, world, ARENA_ROBOTS, context))}
+
+
+def _without_restarts(context: Context) -> dict[str, Figure]:
+    """Measure the step by itself: robots that have failed walk on."""
+    runs = _rates(context.env, context.world, ARENA_ROBOTS, context, restarts=False)
+    return {WITHOUT_RESTARTS: Figure(runs, context.env_limit(context.env, ARENA_ROBOTS))}
+
+
+def _rates(
+    env: SteeringEnv, world: World, robots: int, context: Context, restarts: bool = True
+) -> list[float]:
+    """Return steps a second, one value a run."""
+    ppo = context.config.ppo
+    walk = _make_walk(env, ppo.unroll, robots, ppo.candidates if restarts else 0)
+    held = [_begin(env, world, robots)]
+
+    def call() -> Array:
+        held[0], total = walk(world, held[0])
+        return total
+
+    return [robots * ppo.unroll / seconds for seconds in seconds_a_call(call, context.runs)]
 
 
 def _begin(env: SteeringEnv, world: World, robots: int):
@@ -44,14 +65,17 @@ def _begin(env: SteeringEnv, world: World, robots: int):
 
 
 def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
-    """Return what the roll-out of training does, without a policy: walk `unroll` steps."""
+    """Return what the roll-out of training does, without a policy: walk `unroll` steps.
+
+    With no candidates for fresh starts nobody is restarted.
+    """
     weights = RewardParams.of(env.config.reward)
 
     @partial(jax.jit, donate_argnums=1)
     def walk(world: World, state):
         episode, observation, key = state
         key, pool_key, action_key, restart_key = jax.random.split(key, 4)
-        pool = draw_starts(env, world, pool_key, candidates)
+        pool = draw_starts(env, world, pool_key, candidates) if candidates else None
         shape = (unroll, robots, env.action_size)
         actions = jax.random.uniform(action_key, shape, minval=-1.0)
 
@@ -59,6 +83,8 @@ def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
             episode, _ = carry
             action, key_now = inputs
             after, outcome = env.step(world.atlas, weights, episode, action)
+            if pool is None:
+                return (after, outcome.observation), outcome.reward
             done = outcome.terminated | outcome.truncated
             return restart_where(done, after, outcome.observation, pool, key_now), outcome.reward
 
@@ -75,17 +101,25 @@ def _name(layout: str, robots: int) -> str:
     return f"env_{layout}_{robots}"
 
 
-ENVIRONMENT = tuple(
-    Workload(
-        (
-            Metric(
-                _name(layout, robots),
-                "steps/s",
-                quick=layout == THESIS144.name and robots in QUICK_SIZES,
+WITHOUT_RESTARTS = f"env_without_restarts_{ARENA_ROBOTS}"
+ENVIRONMENT = (
+    *(
+        Workload(
+            (
+                Metric(
+                    _name(layout, robots),
+                    "steps/s",
+                    quick=layout == THESIS144.name and robots in QUICK_SIZES,
+                ),
             ),
-        ),
-        partial(_measure, layout, robots),
-    )
-    for layout in (THESIS144.name, ICRA81.name)
-    for robots in SIZES
+            partial(_measure, layout, robots),
+        )
+        for layout in (THESIS144.name, ICRA81.name)
+        for robots in SIZES
+    ),
+    Workload((Metric(WITHOUT_RESTARTS, "steps/s"),), _without_restarts),
+    *(
+        Workload((Metric(f"env_arenas_{each}", "steps/s", quick=False),), partial(_of_arenas, each))
+        for each in ARENAS
+    ),
 )

@@ -1,7 +1,11 @@
-"""Steps of training a second, end to end: fresh starts, walking, learning."""
+"""Steps of training a second, end to end (fresh starts, walking, learning), and their memory.
+
+What grows is grown by itself, all else as shipped: robots, observation, arenas, networks.
+"""
 
 from functools import partial
 
+import jax
 from jax import Array
 
 from benchmarks.context import Context, changed
@@ -13,51 +17,95 @@ from jaxleas.training.config import RunConfig
 from jaxleas.training.loop import Trainer
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
+ARENAS = (16, 256)
+WIDTHS = (64, 256, 512)  # of the first hidden layer; each further one has half of the one before
 AS_SHIPPED, AGAINST_SIX = "ppo_as_shipped", "ppo_as_shipped_six_environments"
+MEMORY_TOLERANCE = 0.02  # the compiler's own count: it does not jitter
 
 
 def _as_shipped(context: Context) -> dict[str, Figure]:
-    runs, limit = _rates(context, context.config)
-    return {
-        AS_SHIPPED: Figure(runs, limit, context.rival.figure("batched")),
-        # The same figure against the thesis's own set-up.
-        AGAINST_SIX: Figure(runs, limit, context.rival.figure("six")),
-    }
+    figures = _measure(AS_SHIPPED, context.config, context, rival="batched")
+    speed = figures[AS_SHIPPED]
+    # The same figure against the thesis's own set-up.
+    return figures | {AGAINST_SIX: Figure(speed.runs, speed.limit, context.rival.figure("six"))}
 
 
 def _of_size(robots: int, context: Context) -> dict[str, Figure]:
     config = changed(context.config, ppo={"environments": robots})
-    return {f"ppo_{robots}": _figure(context, config)}
+    return _measure(f"ppo_{robots}", config, context, rival="batched")
 
 
 def _icra81(context: Context) -> dict[str, Figure]:
     config = changed(context.config, env={"observation": ICRA81.name})
     # The rival was measured with the shipped observation: no ratio.
-    return {"ppo_icra81": Figure(*_rates(context, config))}
+    return _measure("ppo_icra81", config, context)
 
 
-def _figure(context: Context, config: RunConfig) -> Figure:
-    return Figure(*_rates(context, config), context.rival.figure("batched"))
+def _of_arenas(arenas: int, context: Context) -> dict[str, Figure]:
+    config = changed(context.config, terrain={"arenas": arenas})
+    # The roofs were measured over the shipped terrain: no limit.
+    return _measure(f"ppo_arenas_{arenas}", config, context, limited=False)
 
 
-def _rates(context: Context, config: RunConfig) -> tuple[list[float], float]:
-    """Return steps a second, one value a run, and their bound."""
+def _of_width(width: int, context: Context) -> dict[str, Figure]:
+    hidden = tuple(width >> layer for layer in range(len(context.config.network.hidden)))
+    config = changed(context.config, network={"hidden": hidden})
+    return _measure(f"ppo_width_{width}", config, context)
+
+
+def _measure(
+    name: str,
+    config: RunConfig,
+    context: Context,
+    rival: str | None = None,
+    limited: bool = True,
+) -> dict[str, Figure]:
+    """Return steps a second, and the memory of the compiled step [MiB]."""
     trainer = Trainer(config)
     held = [trainer.fresh_state()]
+    step = trainer.train_step.lower(trainer.world, held[0]).compile()  # type: ignore[attr-defined]
 
     def call() -> dict[str, Array]:
-        held[0], metrics = trainer.train_step(trainer.world, held[0])
+        held[0], metrics = step(trainer.world, held[0])
         return metrics
 
     seconds = seconds_a_call(call, context.runs)
-    return [config.ppo.batch / each for each in seconds], context.ppo_limit(config, trainer.env)
+    speed = Figure(
+        [config.ppo.batch / each for each in seconds],
+        context.ppo_limit(config, trainer.env) if limited else None,
+        context.rival.figure(rival) if rival else None,
+    )
+    return {name: speed, memory_name(name): Figure([step_memory(step)])}
+
+
+def memory_name(name: str) -> str:
+    """Return how the memory of a training is called."""
+    return name.replace("ppo_", "ppo_memory_", 1)
+
+
+def step_memory(step: jax.stages.Compiled) -> float | None:
+    """Return what a compiled step holds at once: terrain, state, batch, temporaries [MiB].
+
+    None where the device's compiler does not count it.
+    """
+    sizes = step.memory_analysis()
+    if sizes is None:
+        return None
+    held = sizes.argument_size_in_bytes + sizes.temp_size_in_bytes
+    return (held + sizes.output_size_in_bytes - sizes.alias_size_in_bytes) / 2**20
+
+
+def _metrics(name: str, quick: bool = False) -> tuple[Metric, Metric]:
+    return (
+        Metric(name, "steps/s", quick=quick),
+        Metric(memory_name(name), "MiB", "lower", tolerance=MEMORY_TOLERANCE, quick=quick),
+    )
 
 
 TRAINING = (
-    Workload((Metric(AS_SHIPPED, "steps/s"), Metric(AGAINST_SIX, "steps/s")), _as_shipped),
-    Workload((Metric("ppo_icra81", "steps/s", quick=False),), _icra81),
-    *(
-        Workload((Metric(f"ppo_{robots}", "steps/s", quick=False),), partial(_of_size, robots))
-        for robots in SIZES
-    ),
+    Workload((*_metrics(AS_SHIPPED, quick=True), Metric(AGAINST_SIX, "steps/s")), _as_shipped),
+    Workload(_metrics("ppo_icra81"), _icra81),
+    *(Workload(_metrics(f"ppo_{each}"), partial(_of_size, each)) for each in SIZES),
+    *(Workload(_metrics(f"ppo_arenas_{each}"), partial(_of_arenas, each)) for each in ARENAS),
+    *(Workload(_metrics(f"ppo_width_{each}"), partial(_of_width, each)) for each in WIDTHS),
 )

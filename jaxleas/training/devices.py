@@ -34,7 +34,7 @@ class Devices:
     mesh: Mesh
 
     @classmethod
-    def of(cls, devices: Sequence[jax.Device]) -> "Devices":
+    def of(cls, devices: Sequence[Any]) -> "Devices":
         """Return these devices in a row."""
         return cls(Mesh(np.array(devices), (AXIS,)))
 
@@ -56,9 +56,8 @@ class Devices:
     def state(self) -> TrainState:
         """How a train state lies: a sharding for each of its fields."""
         names = [field.name for field in dataclasses.fields(TrainState)]
-        return TrainState(
-            **{name: self.divided if name in DIVIDED else self.whole for name in names}
-        )
+        layout: Any = {name: self.divided if name in DIVIDED else self.whole for name in names}
+        return TrainState(**layout)
 
     def divide_robots(self, minibatch: Tree) -> Tree:
         """Divide a minibatch [time, robots, ...] by robot, so that each device learns from a part.
@@ -79,11 +78,20 @@ class Devices:
                 (`jax.eval_shape`'s).
         """
 
-        def put(leaf: Any, layout: NamedSharding) -> jax.Array:
-            return jax.device_put(_from_first(leaf) if several else leaf, layout)
+        if not self.mesh.is_multi_process:
+            return jax.tree.map(jax.device_put, state, jax.tree.broadcast(self.state, state))
+        leaves, structure = jax.tree.flatten(state)
+        is_key = [jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key) for leaf in leaves]
 
-        several = self.mesh.is_multi_process
-        return jax.tree.map(put, state, jax.tree.broadcast(self.state, state))
+        def lay_out(words: list[jax.Array]) -> TrainState:
+            wrapped = [
+                jax.random.wrap_key_data(each) if key else each
+                for each, key in zip(words, is_key, strict=True)
+            ]
+            return jax.tree.unflatten(structure, wrapped)
+
+        words = [_from_first(leaf) for leaf in leaves]
+        return jax.jit(lay_out, out_shardings=self.state)(words)
 
     def gather(self, state: TrainState) -> TrainState:
         """Return a state whose arrays this process can read whole; all processes must call it."""
@@ -121,16 +129,18 @@ def one_device() -> Devices:
     return Devices.of(jax.local_devices()[:1])
 
 
-def _from_first(leaf: Any) -> Any:
-    """Return process 0's array on every process; the others give its shape."""
+def _from_first(leaf: Any) -> np.ndarray:
+    """Return process 0's array, of a random key its words, on every process.
+
+    The others give its shape alone.
+    """
     from jax.experimental.multihost_utils import broadcast_one_to_all
 
     if jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key):
-        shape = jax.eval_shape(jax.random.key_data, leaf)
-        words = jax.random.key_data(leaf) if isinstance(leaf, jax.Array) else shape
-        return jax.random.wrap_key_data(jnp.asarray(_from_first(words)))
-    held = leaf if isinstance(leaf, jax.Array) else np.zeros(leaf.shape, leaf.dtype)
-    return broadcast_one_to_all(np.asarray(held))
+        held = isinstance(leaf, jax.Array)
+        leaf = jax.random.key_data(leaf) if held else jax.eval_shape(jax.random.key_data, leaf)
+    whole = leaf if isinstance(leaf, jax.Array) else np.zeros(leaf.shape, leaf.dtype)
+    return np.asarray(broadcast_one_to_all(np.asarray(whole)))
 
 
 def _require_even(count: int, ppo: PpoConfig) -> None:

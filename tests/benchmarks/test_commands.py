@@ -53,6 +53,7 @@ def baseline(path, value: float, machine: str | None = None) -> str:
         (["--rivals", "--no-rivals"], "not allowed with"),
         (["--check", "--baseline", "/nowhere/base.json"], "does not exist"),
         (["--json", "/dev/null/out.json"], "cannot write"),
+        (["--json", "a.json", "--into", "b.json"], "not allowed with"),
     ],
 )
 def test_wrong_commands(arguments, sentence, capsys):
@@ -113,6 +114,22 @@ def test_a_baseline_from_elsewhere_is_told_and_not_checked(fake, tmp_path, capsy
     assert run("--baseline", path, "--no-rivals") == 0
     assert OTHER in capsys.readouterr().out
     assert run("--check", "--baseline", path, "--no-rivals") == 2
+
+
+def test_pieces_are_put_into_one_file(fake, tmp_path, capsys):
+    path = tmp_path / "pieces.json"
+    assert run("--into", str(path), "--no-rivals") == 0, "a file that is not there is made"
+    entry = json.loads(path.read_text())[0]
+    path.write_text(json.dumps([entry | {"name": "env_other"}, entry]))
+    fake["value"] = 300.0
+    assert run("--into", str(path), "--no-rivals") == 0
+    values = {each["name"]: each["value"] for each in json.loads(path.read_text())}
+    assert values == {"env_fake": 300.0, "env_other": 100.0}
+    path.write_text(json.dumps([entry | {"machine": OTHER}]))
+    capsys.readouterr()
+    assert run("--into", str(path), "--no-rivals") == 2
+    assert "one file is of one machine" in capsys.readouterr().err
+    assert json.loads(path.read_text())[0]["machine"] == OTHER
 
 
 def test_listing_measures_nothing(capsys):

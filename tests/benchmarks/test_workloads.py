@@ -50,6 +50,15 @@ def test_the_environment(context):
     assert figure.rival is None
 
 
+def test_without_restarts_robots_that_have_failed_walk_on(context):
+    env = context.env
+    walk = environment._make_walk(env, 50, 64, 0)
+    state = environment._begin(env, context.world, 64)
+    begun = state[0].step.copy()
+    state, _ = walk(context.world, state)
+    assert (state[0].step == begun + 50).all()
+
+
 @pytest.mark.slow
 def test_robots_that_fail_are_restarted(context):
     env = context.env
@@ -71,9 +80,16 @@ def test_latency(context, batch):
 @pytest.mark.slow
 def test_training(context, brax_ranks):
     figures = training._as_shipped(context)
-    assert set(figures) == {training.AS_SHIPPED, training.AGAINST_SIX}
+    memory = training.memory_name(training.AS_SHIPPED)
+    assert set(figures) == {training.AS_SHIPPED, training.AGAINST_SIX, memory}
     figure = figures[training.AS_SHIPPED]
     assert below_its_limit(figure)
+    # At least the terrain and the batch's observations, which are held at once.
+    ppo, words = context.config.ppo, context.world.atlas.heights.size
+    least = 4 * (words + ppo.batch * context.env.layout.size) / 2**20
+    (held,) = figures[memory].runs
+    assert held is not None
+    assert least < held < 100.0 * least
 
 
 def test_processes_are_weighed_and_their_failures_told(tmp_path):

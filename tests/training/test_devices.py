@@ -18,6 +18,7 @@ from jaxleas.types import InputError
 
 from .runs import ROOT, TINY, environment, start_training, tiny
 
+PATIENCE = 900  # with a program that hangs [s]
 # In a process that has two devices: trains on one and on two, and moves checkpoints between them.
 TWO_DEVICES = """
 import json, sys
@@ -102,7 +103,7 @@ def test_devices_that_are_not_there_or_cannot_share_evenly_are_refused(monkeypat
         choose_devices(3, tiny().ppo)
     several = choose_devices("all", tiny().ppo).mesh.devices.tolist() * 3
     monkeypatch.setattr("jax.devices", lambda: several)
-    with pytest.raises(InputError, match="3 devices cannot share the robots evenly.*--devices 2"):
+    with pytest.raises(InputError, match=r"3 devices cannot share the robots evenly.*--devices 2"):
         choose_devices("all", tiny().ppo)  # 32 robots a minibatch
 
 
@@ -128,7 +129,7 @@ def test_a_wrong_number_of_devices_is_refused(given, monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT))
     import train
 
-    with pytest.raises(UsageError, match="--devices is .*, but it should be all or a number"):
+    with pytest.raises(UsageError, match=r"--devices is .*, but it should be all or a number"):
         train.main(["configs/leas_p1.yaml", f"--devices={given}"])
 
 
@@ -148,15 +149,24 @@ def free_port() -> int:
         return server.getsockname()[1]
 
 
-def train_together(*arguments: str, cache: Path) -> list[str]:
+def run_together(*arguments: str, cache: Path) -> tuple[list[int | None], list[str]]:
+    """Run two processes of one training; return their exit codes and what they said."""
     where = ["--coordinator", f"127.0.0.1:{free_port()}"]
     both = [
         start_training(*arguments, *where, "--process", f"{index}/2", cache=cache)
         for index in (0, 1)
     ]
-    outputs = [process.communicate(timeout=300)[0] for process in both]
-    assert [process.returncode for process in both] == [0, 0], outputs
-    return outputs
+    try:
+        outputs = [process.communicate(timeout=PATIENCE)[0] for process in both]
+    finally:
+        for process in both:
+            process.kill()
+    return [process.returncode for process in both], outputs
+
+
+def train_together(*arguments: str, cache: Path) -> None:
+    codes, outputs = run_together(*arguments, cache=cache)
+    assert codes == [0, 0], outputs
 
 
 @pytest.mark.slow
@@ -166,7 +176,7 @@ def test_two_processes_train_as_one_does(tmp_path):
     config.write_text(yaml.safe_dump(TINY))
     alone, cache = tmp_path / "alone", tmp_path / "cache"
     process = start_training(str(config), "--run-dir", str(alone), cache=cache)
-    assert process.wait(timeout=300) == 0
+    assert process.wait(timeout=PATIENCE) == 0
     together = tmp_path / "together"
     train_together(str(config), "--run-dir", str(together), cache=cache)
     expected, found = (read_metrics(each / "metrics.jsonl") for each in (alone, together))
@@ -187,13 +197,7 @@ def test_two_processes_train_as_one_does(tmp_path):
 
 @pytest.mark.slow
 def test_what_process_0_cannot_begin_stops_the_other(tmp_path):
-    where = ["--coordinator", f"127.0.0.1:{free_port()}"]
-    missing = str(tmp_path / "missing")
-    both = [
-        start_training("--resume", missing, *where, "--process", f"{index}/2", cache=tmp_path)
-        for index in (0, 1)
-    ]
-    outputs = [process.communicate(timeout=120)[0] for process in both]
-    assert [process.returncode for process in both] == [2, 2], outputs
+    codes, outputs = run_together("--resume", str(tmp_path / "missing"), cache=tmp_path)
+    assert codes == [2, 2], outputs
     assert "does not exist" in outputs[0]
     assert "process 0 could not begin" in outputs[1]
