@@ -94,7 +94,7 @@ def _figure_4_5(by_name: dict[str, Measurement]) -> "Figure":
 def _figures_5_10_to_13() -> "Figure":
     figure, axes = _new(4, 2, (13.0, 6.5))
     for ax, sample in zip(axes, L1_SAMPLES, strict=False):
-        patches = {f"S{n}": rectangle(*each) for n, each in enumerate(sample)}
+        patches = {f"P{n}": rectangle(*each) for n, each in enumerate(sample)}
         described = content({**START, **patches}, [list(patches)], model="feet")
         problem = parse_problem("figure 5.10", described)
         _cost(ax, problem, tuple(patches), (0.0, 1.0, 0.0, 1.0))

@@ -58,12 +58,12 @@ def _with_model(model: str, entries: list[dict], sets: dict) -> Iterator[Row]:
         said = entry["published_sl1m_feet"]
         published += feasible and bool(said["success"] or said["l1_undecided"] == 0)
     name = f"contacts_{model}"
-    yield Row(f"{name}_mip_right", "%", [100.0 * np.mean(right)], None, 100.0, "higher")
-    yield Row(f"{name}_mip_median", "ms", [np.median(mip)])
-    yield Row(f"{name}_mip_p90", "ms", [np.percentile(mip, 90)])
+    yield Row(f"{name}_mip_right", "%", [100.0 * float(np.mean(right))], None, 100.0, "higher")
+    yield Row(f"{name}_mip_median", "ms", [float(np.median(mip))])
+    yield Row(f"{name}_mip_p90", "ms", [float(np.percentile(mip, 90))])
     yield Row(f"{name}_mip_17_to_19_steps", "ms", sized, None, 60.0)
-    yield Row(f"{name}_sl1m_first_lp", "ms", [np.median(first)], None, 10.0)
-    yield Row(f"{name}_sl1m_median", "ms", [np.median(sl1m)])
+    yield Row(f"{name}_sl1m_first_lp", "ms", [float(np.median(first))], None, 10.0)
+    yield Row(f"{name}_sl1m_median", "ms", [float(np.median(sl1m))])
     yield Row(f"{name}_sl1m_solved", "problems", [solved], published, None, "higher")
     yield Row(f"{name}_sl1m_false", "problems", [false])
     yield Row(f"{name}_worst_violation", "m", [max(violations)], None, 1e-6)
