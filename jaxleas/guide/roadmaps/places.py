@@ -86,8 +86,10 @@ class Places:
         self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
-        margin = self.margins(places, yaw)["the condition"]
-        return np.asarray((margin >= 0.0) & np.isfinite(self.root_height(places)))
+        valid = np.zeros(len(places), dtype=bool)
+        valid[self.margins(places, yaw)["the condition"] >= 0.0] = True
+        valid[np.isnan(self.root_height(places))] = False
+        return valid
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
