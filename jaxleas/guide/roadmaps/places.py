@@ -86,16 +86,14 @@ class Places:
         self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
-        valid = np.zeros(len(places), dtype=bool)
-        valid[self.margins(places, yaw)["the condition"] >= 0.0] = True
-        valid[np.isnan(self.root_height(places))] = False
-        return valid
+        margin = self.margins(places, yaw)["the condition"]
+        return (margin >= 0.0) & ~np.isnan(self.root_height(places))
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
         turned = np.tile(HEADINGS, len(places))
         each = self.valid(np.repeat(places, len(HEADINGS), axis=0), turned)
-        return each.reshape(len(places), -1).any(axis=1)
+        return np.logical_or.reduce(each.reshape(len(places), -1), axis=1)
 
     def draw(
         self, rng: np.random.Generator, count: int, clearance: float = 0.0
