@@ -87,13 +87,13 @@ class Places:
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
         margin = self.margins(places, yaw)["the condition"]
-        return np.asarray((margin >= 0.0) & np.isfinite(self.root_height(places)))
+        return (margin >= 0.0) & ~np.isnan(self.root_height(places))
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
         turned = np.tile(HEADINGS, len(places))
         each = self.valid(np.repeat(places, len(HEADINGS), axis=0), turned)
-        return each.reshape(len(places), -1).any(axis=1)
+        return np.logical_or.reduce(each.reshape(len(places), -1), axis=1)
 
     def draw(
         self, rng: np.random.Generator, count: int, clearance: float = 0.0

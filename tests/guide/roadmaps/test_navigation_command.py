@@ -97,9 +97,9 @@ def test_an_invalid_start_says_which_condition_by_how_much_and_what_would_do(tmp
         ("-1,-1", "0,-2", r"--to 0,-2: there is no ground"),
         ("-1,-1", "9,0", r"--to 9,0: off the map, which spans x -3\.05 to 3\.05"),
         ("-1", "1,1", "--from '-1' is not x,y or x,y,yaw"),
-        ("-1,a", "1,1", "--from '-1,a' is not"),
+        ("1,a", "1,1", "--from '1,a' is not"),
         ("-1,-1", "1,1,0", "--to '1,1,0' is not x,y"),
-        ("-1,nan", "1,1", "finite"),
+        ("1,nan", "1,1", "finite"),
     ],
 )
 def test_ends_that_cannot_be_used_are_refused(terrain, tmp_path, start, goal, complaint):
