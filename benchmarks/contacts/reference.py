@@ -66,4 +66,4 @@ def _with_model(model: str, entries: list[dict], sets: dict) -> Iterator[Row]:
     yield Row(f"{name}_sl1m_median", "ms", [float(np.median(sl1m))])
     yield Row(f"{name}_sl1m_solved", "problems", [solved], published, None, "higher")
     yield Row(f"{name}_sl1m_false", "problems", [false])
-    yield Row(f"{name}_worst_violation", "m", [max(violations)], None, 1e-6)
+    yield Row(f"{name}_worst_violation", "m", [float(max(violations))], None, 1e-6)

@@ -48,7 +48,7 @@ def plan_sampling(
     """
     require_time_limit(time_limit)
     settings = settings or SamplingSettings()
-    world = talos_world(scene, settings)
+    world = talos_world([scene], settings)
     begin = time.perf_counter()
     walk = _TimedWalk(world, guide, begin + time_limit)
     _require_over(scene, guide)
@@ -143,7 +143,7 @@ class _TimedWalk(_Walk):
     """One guide path, walked until a deadline."""
 
     def __init__(self, world: World, guide: GuidePath, deadline: float) -> None:
-        super().__init__(world, [guide])
+        super().__init__(world, [guide], [0])
         self.deadline = deadline
 
     def _go_on(self) -> tuple[np.ndarray, np.ndarray]:

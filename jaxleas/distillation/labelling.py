@@ -14,7 +14,7 @@ from jaxleas.distillation.folder import RoundFolder
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.files import write_json
-from jaxleas.guide.files import write_guide_paths
+from jaxleas.guide.files import Reason, write_guide_paths
 from jaxleas.labels import PlannerSettings, Workers, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.scene import Scene, write_scene
@@ -69,10 +69,9 @@ def label_round(
         paths = walks.paths(ground.env.config.limits.time_step)
         for number in np.unique(walks.map_index).tolist():
             chosen = [paths[row] for row in np.flatnonzero(walks.map_index == number)]
+            cut: list[Reason] = ["stopped"] * len(chosen)
             write_scene(folder.labels / f"scene_{number:04d}.json", ground.scenes[number])
-            write_guide_paths(
-                folder.labels / f"guides_{number:04d}.npz", chosen, ["stopped"] * len(chosen)
-            )
+            write_guide_paths(folder.labels / f"guides_{number:04d}.npz", chosen, cut)
         write_json(folder.labels / "chosen.json", {"guides": len(paths), "seed": seed})
         files = sorted(folder.labels.glob("guides_*.npz"))
     shards = [

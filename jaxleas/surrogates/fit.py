@@ -204,7 +204,7 @@ class _Hazards:
         )
         if "flip" in walks:
             order, sign = self.mirror
-            image = features[..., order] * jnp.asarray(sign, features.dtype)
+            image = features[..., order] * jnp.asarray(sign, features.dtype)[None, None]
             features = jnp.where(walks["flip"][:, None, None], image, features)
         hidden = jnp.zeros((len(map_index), weights.hidden_size))
         _, logit = jax.lax.scan(

@@ -49,14 +49,14 @@ def test_features_of_a_mirrored_walk_are_the_mirrored_features():
     order, sign = mirrored(points)
 
     def image(one: RootMotion) -> RootMotion:
-        flip = jnp.array([1.0, -1.0, 1.0])
+        flip = jnp.array([[1.0, -1.0, 1.0]])
         return RootMotion(one.position * flip, one.velocity * flip, -one.yaw)
 
     swapped = heights[:, order[: len(points)]]  # what lay to the left now lies to the right
     np.testing.assert_allclose(points[order[: len(points)]], points * [1, -1], atol=1e-9)
     direct = walk_features(jnp.asarray(swapped), image(now), image(last), 5, (-1.4, -0.2))
     plain = walk_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
-    np.testing.assert_allclose(direct, plain[:, order] * sign, atol=2e-5)
+    np.testing.assert_allclose(direct, np.asarray(plain)[:, order] * sign, atol=2e-5)
 
 
 def test_the_network_equals_the_slow_twin():

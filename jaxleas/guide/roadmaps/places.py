@@ -87,7 +87,7 @@ class Places:
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
         margin = self.margins(places, yaw)["the condition"]
-        return (margin >= 0.0) & ~np.isnan(self.root_height(places))
+        return np.logical_and(margin >= 0.0, ~np.isnan(self.root_height(places)))
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
