@@ -1,0 +1,139 @@
+"""A distillation, very small: it goes through all stages, and goes on where it was stopped."""
+
+import jax
+import numpy as np
+import pytest
+
+from jaxleas import cli
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.distillation.opening import open_folder
+from jaxleas.distillation.practice import practice_config, read_run
+from jaxleas.files import read_json
+from jaxleas.surrogates import read_surrogate
+from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.loop import train
+from jaxleas.training.policy import read_policy
+from jaxleas.training.run_folder import RunFolder
+from jaxleas.types import InputError
+
+from ..training.runs import ROOT, tiny
+
+SHIPPED = sorted((ROOT / "configs").glob("leas_p2_*.yaml"))
+YAML = """\
+planner: sampling
+parameters: {samples: 2000}
+rounds: 1
+collect: {guides: 480, steps: 60, disturbances: [0.3, 0.9]}
+fit: {epochs: 1, code: 8, hidden: 4, held_out: 0.5}
+practice: {steps: 2048}
+judge: {suites: [hole], starts: 4}
+"""
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_configurations_load_and_mean_the_same_resolved(path, tmp_path):
+    config = load_config(DistillationConfig, path)
+    (tmp_path / "resolved.yaml").write_text(to_yaml(config))
+    assert load_config(DistillationConfig, tmp_path / "resolved.yaml") == config
+
+
+@pytest.fixture(scope="module")
+def start(tmp_path_factory):
+    """A run of a few updates to begin with."""
+    base = tiny()
+    terrain = base.terrain.model_copy(update={"arenas": 6})
+    config = base.model_copy(update={"terrain": terrain})
+    path = tmp_path_factory.mktemp("start") / "run"
+    # Brax's own code relies on rank promotion.
+    with (
+        jax.numpy_rank_promotion("allow"),
+        RunFolder.create(path, to_yaml(config), ["train.py"]) as run,
+    ):
+        train(config, run)
+    return path
+
+
+def test_what_was_learned_is_read_and_carried_over(start):
+    config, learned = read_run(start)
+    policy = read_policy(start / "policy.npz")
+    shapes = [layer["kernel"].shape for _, layer in sorted(learned.params.policy["params"].items())]
+    assert shapes == [kernel.shape for kernel in policy.kernels]
+    practice = practice_config(DistillationConfig(), config)
+    assert practice.network == config.network
+    assert practice.env.reward.failure == config.ppo.final_failure
+    assert practice.ppo.steps == DistillationConfig().practice.steps
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("brax_ranks")
+def test_it_goes_through_all_stages_and_goes_on_where_it_was_stopped(start, tmp_path, capsys):
+    (tmp_path / "c.yaml").write_text(YAML)
+    out = tmp_path / "out"
+    command = ["distill", str(tmp_path / "c.yaml"), "--out", str(out), "--start", str(start)]
+    command += ["--processes", "1"]
+    cli.run(command)
+    folder = DistillationFolder(out)
+    rounds = read_json(folder.table)["rounds"]
+    assert [each["round"] for each in rounds] == [0, 1]
+    assert rounds[1]["labels"] == 480
+    assert read_surrogate(folder.surrogate).identity.parameters["samples"] == 2000
+    before = read_policy(start / "policy.npz")
+    after = read_policy(folder.policy)
+    assert not np.array_equal(before.kernels[0], after.kernels[0])
+
+    # As if killed after the labels of round 1, with one verdict file still missing.
+    first = folder.round(1)
+    kept = first.surrogate.read_bytes()
+    for file in (first.surrogate, first.labelled, first.judged, folder.table):
+        file.unlink()
+    verdicts = sorted(first.labels.rglob("verdicts_*.json"))
+    untouched = verdicts[0].stat().st_mtime_ns
+    verdicts[-1].unlink()
+    capsys.readouterr()
+    cli.run(command)
+    assert verdicts[-1].is_file()
+    assert verdicts[0].stat().st_mtime_ns == untouched
+    assert read_json(first.labelled)["judged"] < 480
+    assert first.surrogate.read_bytes() == kept
+    assert "mean" in capsys.readouterr().out
+
+
+def test_a_folder_is_begun_once_and_gone_on_with_as_it_was(start, tmp_path):
+    folder = DistillationFolder(tmp_path / "out")
+    config = DistillationConfig()
+    assert open_folder(folder, config, start) == config
+    assert open_folder(folder, config, start) == config
+    with pytest.raises(InputError, match="another configuration"):
+        open_folder(folder, DistillationConfig(rounds=9), start)
+    with pytest.raises(InputError, match="was begun with"):
+        open_folder(folder, config, None)
+
+
+@pytest.mark.parametrize(
+    ("yaml", "sentence"),
+    [
+        ("planner: sampling\nparameters: {sample: 3}\n", "--sample is for the planner"),
+        ("planner: sampling\nparameters: {samples: 0}\n", "--samples 0"),
+        ("planner: magic\n", "planner"),
+        ("practice: {threshold: 1.0}\n", "threshold"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_left(tmp_path, yaml, sentence):
+    (tmp_path / "c.yaml").write_text(yaml)
+    with pytest.raises(InputError, match=sentence):
+        cli.run(["distill", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "out")])
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").write_text("precious")
+    (tmp_path / "c.yaml").write_text("planner: sampling\n")
+    with pytest.raises(InputError, match="is no distillation"):
+        cli.run(["distill", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "mine")])
+    with pytest.raises(InputError, match="does not exist"):
+        cli.run(
+            ["distill", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "o"), "--start", "no"]
+        )
+    assert not (tmp_path / "o").exists()
