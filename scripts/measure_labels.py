@@ -1,6 +1,6 @@
 """Measure how fast guide paths are judged, and write benchmarks/results/labels.json.
 
-    python scripts/measure_labels.py --policy runs/leas_p1 --out benchmarks/results/labels.json
+    python -m scripts.measure_labels --policy runs/leas_p1 --out benchmarks/results/labels.json
 
 Guide paths are the policy's, on held-out terrain (never the evaluation's): 40 each on flat ground
 and on each transition, and 40 over one arena of 5 x 30 tiles. Needs a quiet machine.
