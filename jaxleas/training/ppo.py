@@ -40,20 +40,48 @@ def make_train_step(
         A function (world, state) -> (state after one update, metrics of that update).
     """
     walk = _make_walk(config, env, networks)
-    learn = _make_learn(config, env, networks, divide_robots)
+    update = make_update(config, env, networks, divide_robots)
 
     def train_step(world: World, state: TrainState) -> tuple[TrainState, Metrics]:
         key, walk_key, learn_key = jax.random.split(state.key, 3)
         state, batch, walked = walk(world, state, walk_key)
+        state, learned = update(state, batch, learn_key)
+        return state.replace(key=key), walked | learned  # type: ignore[attr-defined]
+
+    return train_step
+
+
+def make_update(
+    config: RunConfig,
+    env: SteeringEnv,
+    networks: PPONetworks,
+    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+) -> Callable[[TrainState, Any, Array], tuple[TrainState, Metrics]]:
+    """Return the second half of the train step: learn from a batch, whoever walked it.
+
+    The ratios of the loss are against the policy that walked, whose log-probabilities are in the
+    batch: it need not be the present one.
+
+    Args:
+        config: of the run.
+        env: the task.
+        networks: actor and critic.
+        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+
+    Returns:
+        A function (state, batch [time, robots], key) -> (state after one update, metrics).
+    """
+    learn = _make_learn(config, env, networks, divide_robots)
+
+    def update(state: TrainState, batch: Any, key: Array) -> tuple[TrainState, Metrics]:
         normaliser = update_normaliser(state.normaliser, batch.observation)
-        params, optimiser, learned = learn(state, normaliser, batch, learn_key)
+        params, optimiser, learned = learn(state, normaliser, batch, key)
         averaged = _average(config.ppo.averaging, state, params)
         state = state.replace(  # type: ignore[attr-defined]
             params=params,
             averaged=averaged,
             optimiser=optimiser,
             normaliser=normaliser,
-            key=key,
             update=state.update + 1,
         )
         finite = {
@@ -62,9 +90,9 @@ def make_train_step(
             "finite/loss": _all_finite(learned),
             "finite/parameters": _all_finite((params, optimiser)),
         }
-        return state, walked | learned | finite
+        return state, learned | finite
 
-    return train_step
+    return update
 
 
 def _average(decay: float, state: TrainState, params: Any) -> Any:
@@ -78,19 +106,22 @@ def _average(decay: float, state: TrainState, params: Any) -> Any:
     )
 
 
+def reward_weights(config: RunConfig, update: Array) -> RewardParams:
+    """Return the reward's weights at an update: a failure costs more from update to update."""
+    weights = RewardParams.of(config.env.reward)
+    progress = update.astype(jnp.float32) / config.ppo.updates
+    growth = config.ppo.final_failure - config.env.reward.failure
+    return weights.replace(failure=weights.failure + progress * growth)  # type: ignore[attr-defined]
+
+
 def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Callable:
     """Return the roll-out: every robot takes `unroll` steps with the present policy."""
     ppo = config.ppo
     distribution = networks.parametric_action_distribution
-    start_weights = RewardParams.of(config.env.reward)
 
     def walk(world: World, state: TrainState, key: Array):
         pool_key, noise_key, restart_key = jax.random.split(key, 3)
-        progress = state.update.astype(jnp.float32) / ppo.updates
-        growth = ppo.final_failure - config.env.reward.failure
-        weights = start_weights.replace(  # type: ignore[attr-defined]
-            failure=start_weights.failure + progress * growth
-        )
+        weights = reward_weights(config, state.update)
         pool = draw_starts(env, world, pool_key, ppo.candidates)
         restart_keys = jax.random.split(restart_key, ppo.unroll)
         # All exploration noise in one draw: one random key a batch, not one a robot.
