@@ -95,6 +95,7 @@ class Faithful:
         state: TrainState,
         on_update: Callable[[TrainState, dict[str, Any]], None],
         asked_to_stop: Callable[[], bool] = lambda: False,
+        on_wave: Callable[[TrainState, int], None] = lambda state, waiting: None,
     ) -> TrainState:
         """Walk, judge and learn until `ppo.updates` updates are done, or until asked to stop.
 
@@ -104,6 +105,7 @@ class Faithful:
             state: to go on from.
             on_update: told state and metrics after each update.
             asked_to_stop: asked after each wave and update.
+            on_wave: told state and steps that wait to be learned from, after each judged wave.
 
         Returns:
             The state after the last update.
@@ -126,6 +128,7 @@ class Faithful:
                 episodes, verdicts = flying.popleft().result()
                 self.tally.count(episodes, verdicts)
                 self.stream.add(cut(episodes, verdicts))
+                on_wave(state, len(self.stream))
             return state
         finally:
             bench.shutdown(wait=True, cancel_futures=True)

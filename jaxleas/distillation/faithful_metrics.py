@@ -30,13 +30,18 @@ class Tally:
         self.kept += int(kept_steps(episodes, verdicts).sum())
         self.seconds += sum(verdict.seconds for verdict in verdicts)
 
+    @property
+    def share(self) -> float:
+        """Share of the guide paths that the planner got through."""
+        return self.passed / max(self.guides, 1)
+
     def take(self) -> dict[str, float]:
         """Return the numbers as metrics, and begin anew; nothing where no wave came in between."""
         found = {}
         if self.guides:
             found = {
                 "planner/guides": float(self.guides),
-                "planner/passed": self.passed / self.guides,
+                "planner/passed": self.share,
                 "planner/undecided": self.undecided / self.guides,
                 "planner/steps_walked": float(self.walked),
                 "planner/steps_kept": self.kept / max(self.walked, 1),

@@ -66,7 +66,7 @@ def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None
         desk = _Desk(training, run, checkpoints, log, progress)
         if not resuming:
             desk.save(state)
-        state = training.run(state, desk.record, lambda: interruption.requested)
+        state = training.run(state, desk.record, lambda: interruption.requested, desk.show)
         if int(state.update) < config.ppo.updates:
             desk.save(state)
             raise InterruptedRunError(
@@ -106,10 +106,14 @@ class _Desk:
             verdict = self.examine(self.held_out, state.normaliser, state.averaged)
             numbers |= {name: float(value) for name, value in verdict.items()}
         self.log.append(done * config.ppo.batch, numbers)
-        shown = {"planned": f"{100 * numbers.get('planner/passed', float('nan')):.1f} %"}
-        self.progress.update(done * config.ppo.batch, shown)
         if due:
             self.save(state)
+
+    def show(self, state: TrainState, waiting: int) -> None:
+        """Show how far it is, by wave: updates come in bursts, waves at an even pace."""
+        shown = {"planned": f"{100 * self.training.tally.share:.1f} %"}
+        step = int(state.update) * self.training.config.ppo.batch + waiting
+        self.progress.update(min(step, self.progress.total), shown)
 
     def save(self, state: TrainState) -> None:
         """Keep state and policy."""
