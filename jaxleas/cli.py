@@ -53,7 +53,12 @@ COMMANDS = {
         "view",
         "drive policies and play back paths in the browser",
     ),
-    "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
+    "figures": (
+        "jaxleas.evaluation.figures_command",
+        "figures",
+        "measure what the thesis's figures show",
+    ),
+    "report": ("jaxleas.distillation.commands", "report", "write a run's report as one HTML file"),
 }
 
 
