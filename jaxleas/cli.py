@@ -48,6 +48,12 @@ COMMANDS = {
         "distill",
         "train a policy that knows its planner",
     ),
+    "sweep": ("jaxleas.sweeps.commands", "sweep", "search a space of configurations"),
+    "population": (
+        "jaxleas.sweeps.commands",
+        "population",
+        "train several policies in one program",
+    ),
     "view": (
         "jaxleas.viewer.commands",
         "view",
