@@ -53,6 +53,8 @@ COMMANDS = {
         "view",
         "drive policies and play back paths in the browser",
     ),
+    "runs": ("jaxleas.records.commands", "runs", "list runs: state, success, configuration"),
+    "compare": ("jaxleas.records.commands", "compare", "put runs side by side"),
     "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
 }
 
