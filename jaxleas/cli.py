@@ -64,6 +64,8 @@ COMMANDS = {
         "figures",
         "measure what the thesis's figures show",
     ),
+    "runs": ("jaxleas.records.commands", "runs", "list runs: state, success, configuration"),
+    "compare": ("jaxleas.records.commands", "compare", "put runs side by side"),
     "report": ("jaxleas.distillation.commands", "report", "write a run's report as one HTML file"),
 }
 
