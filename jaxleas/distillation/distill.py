@@ -17,6 +17,7 @@ from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.judging import exact_success, judge_round, summary
 from jaxleas.distillation.labelling import Ground, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import atomic_path, read_json, write_json
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
@@ -86,7 +87,7 @@ class Distillation:
         self.config, self.folder = config, folder
         self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
         self.start = start
-        self.run_config, self._learned = read_run(start)
+        self.run_config, self._learned = widen(*read_run(start), config.practice.observation)
         self.env = SteeringEnv(self.run_config.env)
         self.workers = ProcessWorkers(processes)
         self.judge = Judge(config.planner, self.settings, workers=self.workers)
@@ -115,6 +116,19 @@ class Distillation:
             height_high=env.height_high,
         )
 
+    def _begin(self, say: Say) -> tuple[SteeringPolicy, Learned]:
+        """Return the policy begun with, and what it has learned, practised without surrogate."""
+        policy = widen_policy(read_policy(f"{self.start}/{POLICY_FILE}"), self.env)
+        steps = self.config.practice.steps_before
+        if not steps:
+            return policy, self._learned
+        folder = self.folder.round(0)
+        if not folder.practised.is_file():
+            say("round 0: practice without surrogate")
+            config = practice_config(self.config, self.run_config, steps)
+            practise(folder, config, None, self._learned, 0.0)
+        return read_policy(folder.policy), read_run(folder.run)[1]
+
     def run(self, say: Say) -> list[RoundResult]:
         """Go on to the end; return the table of all rounds.
 
@@ -122,9 +136,9 @@ class Distillation:
             say: told, in words, what is done now.
         """
         try:
-            policy = read_policy(f"{self.start}/{POLICY_FILE}")
+            policy, learned = self._begin(say)
             results = [self._judge(0, policy, say, {}, None, 0)]
-            learned, surrogate = self._learned, None
+            surrogate = None
             for number in range(1, self.config.rounds + 1):
                 result, policy, learned, surrogate = self._round(
                     number, policy, learned, surrogate, say
@@ -160,8 +174,7 @@ class Distillation:
             config = practice_config(self.config, self.run_config)
             practise(folder, config, surrogate, learned, self.config.practice.threshold)
         seconds["practice"] = read_json(folder.practised)["seconds"]
-        policy = read_policy(folder.run / POLICY_FILE)
-        _, learned = read_run(folder.run)
+        policy, (_, learned) = read_policy(folder.policy), read_run(folder.run)
         result = self._judge(number, policy, say, seconds, surrogate.report, labelled["guides"])
         return result, policy, learned, surrogate
 
@@ -183,7 +196,7 @@ class Distillation:
             )
             practise_faithfully(folder, training, learned)
         seconds = {"practice": read_json(folder.practised)["seconds"]}
-        policy = read_policy(folder.run / POLICY_FILE)
+        policy = read_policy(folder.policy)
         _, learned = read_run(folder.run)
         return self._judge(number, policy, say, seconds, None, 0), policy, learned, None
 
@@ -262,7 +275,7 @@ class Distillation:
         write_json(self.folder.table, {"version": 1, "rounds": [asdict(each) for each in results]})
         best = max(results[1:], key=lambda result: (result.success, -result.round))
         source = self.folder.round(best.round)
-        files = {source.run / POLICY_FILE: self.folder.policy}
+        files = {source.policy: self.folder.policy}
         if self.config.mode == "surrogate":
             files[source.surrogate] = self.folder.surrogate
         for file, target in files.items():

@@ -16,7 +16,7 @@ from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
 from jaxleas.training.brax_blocks import PPONetworks
 from jaxleas.training.config import RunConfig
-from jaxleas.training.ppo import reward_weights
+from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
 
 Walk = Callable[[World, TrainState, Key[Array, ""]], Any]
@@ -70,13 +70,14 @@ def make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks, robots
         A function (world, state, key) -> arrays that `to_host` understands.
     """
     distribution = networks.parametric_action_distribution
-    steps = config.env.episode_steps
+    steps, numbers = config.env.episode_steps, PpoParams.of(config)
 
     def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
         pool_key, take_key, noise_key = jax.random.split(key, 3)
         pool = draw_starts(env, world, pool_key, 2 * robots)
         episode, observation = take(pool, take_key, robots)
-        weights = reward_weights(config, state.update)
+        progress = state.update.astype(jnp.float32) / config.ppo.updates
+        weights = numbers.reward_weights(progress)
         noise = jax.random.normal(noise_key, (steps, robots, env.action_size))
 
         def advance(carry, noise_now):

@@ -27,6 +27,7 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.training.config import RunConfig
 from jaxleas.training.networks import initial_normaliser, make_networks
 from jaxleas.training.ppo import make_update
+from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import Learned, TrainState, fresh_networks, make_optimiser
 
 Wave = tuple[Episodes, list[Verdict]]
@@ -81,7 +82,7 @@ class Faithful:
         state = TrainState(
             params=params,
             averaged=params.policy,
-            optimiser=make_optimiser(self.config.ppo).init(params),
+            optimiser=make_optimiser(self.config.ppo, PpoParams.of(self.config)).init(params),
             normaliser=initial_normaliser(self.config.network, self.env),
             episode=(),  # type: ignore[arg-type]  (no episode outlasts its wave)
             observation=(),  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ import jax
 
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.folder import RoundFolder
-from jaxleas.files import write_json
+from jaxleas.distillation.practice import conclude
 from jaxleas.training.checkpoints import Checkpoints
 from jaxleas.training.configuration import to_yaml
 from jaxleas.training.held_out import make_examination
@@ -43,9 +43,7 @@ def practise_faithfully(folder: RoundFolder, training: Faithful, learned: Learne
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
         _sit(training, run, learned, str(folder.path.parent))
-    seconds = round(time.perf_counter() - begun, 1)
-    steps = config.ppo.updates * config.ppo.batch
-    write_json(folder.practised, {"steps": steps, "seconds": seconds})
+    conclude(folder, config, time.perf_counter() - begun)
 
 
 def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None:
