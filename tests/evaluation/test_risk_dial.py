@@ -100,6 +100,10 @@ def test_a_higher_threshold_buys_success_with_starts_refused():
         (["--surrogate", "S"], "needs a --threshold"),
         (["--surrogate", "S", "--threshold", "1.5"], "--threshold is 1.5"),
         (["--surrogate", "nowhere.npz", "--threshold", "0.5"], r"nowhere\.npz"),
+        (
+            ["--surrogate", "S", "--threshold", "0.5", "--planners", "mip"],
+            "stands in for the sampling planner, but mip will judge",
+        ),
         (["--surrogate", "O", "--threshold", "0.5"], "observation = icra81, not thesis144"),
     ],
 )
