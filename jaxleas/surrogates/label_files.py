@@ -28,6 +28,7 @@ class Labels:
     Attributes:
         planner: that judged.
         parameters: it was given.
+        robot: whose contacts it planned.
         walks: with verdicts.
         atlas: their terrains.
         passed_over: guide paths without a verdict: the planner's time limit came first.
@@ -35,6 +36,7 @@ class Labels:
 
     planner: str
     parameters: dict[str, Any]
+    robot: str
     walks: LabelledWalks
     atlas: Atlas
     passed_over: int
@@ -66,12 +68,11 @@ def read_labels(
     contents = [_read(path) for path in files]
     first = contents[0]["provenance"]
     for path, content in zip(files, contents, strict=True):
-        for key in ("planner", "parameters"):
-            if content["provenance"][key] != first[key]:
-                raise InputError(
-                    f"{path} holds verdicts of another planner or other parameters than"
-                    f" {files[0]}: one surrogate stands in for one planner"
-                )
+        if _whose(content["provenance"]) != _whose(first):
+            raise InputError(
+                f"{path} holds verdicts of another planner or other parameters, or on another"
+                f" robot, than {files[0]}: one surrogate stands in for one planner"
+            )
     keep_every = int(first["parameters"]["keep_every"])
     scenes: dict[str, int] = {}
     maps, parts, passed_over = [], [], 0
@@ -101,17 +102,31 @@ def read_labels(
     return Labels(
         planner=first["planner"],
         parameters=first["parameters"],
+        robot=_robot(first),
         walks=join(parts).trimmed(),
         atlas=make_atlas(maps),
         passed_over=passed_over,
     )
 
 
+def _whose(provenance: dict[str, Any]) -> tuple[Any, ...]:
+    """Return what all verdicts that a surrogate learns from must have in common."""
+    return provenance["planner"], provenance["parameters"], _robot(provenance)
+
+
+def _robot(provenance: dict[str, Any]) -> str:
+    """Return whose contacts were planned: Talos's, where a file does not say."""
+    return str(provenance.get("robot", "talos"))
+
+
 def _read(path: Path) -> dict[str, Any]:
     content = read_json(path)
     try:
         if content["version"] != VERSION:
-            raise InputError(f"{path} is a verdict file of version {content['version']}, not 1")
+            raise InputError(
+                f"{path} is a verdict file of version {content['version']}; this version reads"
+                f" {VERSION}: label again"
+            )
         provenance = content["provenance"]
         int(provenance["parameters"]["keep_every"])
         for name in ("scene", "guides"):
