@@ -59,7 +59,14 @@ COMMANDS = {
         "view",
         "drive policies and play back paths in the browser",
     ),
-    "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
+    "figures": (
+        "jaxleas.evaluation.figures_command",
+        "figures",
+        "measure what the thesis's figures show",
+    ),
+    "runs": ("jaxleas.records.commands", "runs", "list runs: state, success, configuration"),
+    "compare": ("jaxleas.records.commands", "compare", "put runs side by side"),
+    "report": ("jaxleas.distillation.commands", "report", "write a run's report as one HTML file"),
 }
 
 

@@ -23,6 +23,7 @@ from jaxleas.training.processes import any_process, from_first
 from jaxleas.training.progress import Progress
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, TrainState, initial_state
+from jaxleas.training.watching import require_watchers
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import JaxleasError
 
@@ -125,15 +126,23 @@ def train(
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
+        InputError: a watcher is not installed or not set up.
     """
+    require_watchers(config.watch)  # before minutes go into compiling
     trainer = Trainer(config, condition, devices or one_device(), foresight)
     checkpoints = Checkpoints(run.checkpoints)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
     total = config.ppo.updates * config.ppo.batch
     with (
-        MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(total, start=step) as progress,
+        MetricsLog(
+            run.path,
+            truncate_after_step=step if resuming else None,
+            watch=config.watch,
+            config=config.model_dump(mode="json"),
+            say=progress.say,
+        ) as log,
         Interruption() as interruption,
     ):
         desk = _Desk(trainer, run, checkpoints, log, progress, best, on_examined)

@@ -55,7 +55,7 @@ def make_train_step(
         The train step, on whose arguments alone what it returns depends.
     """
     walk = _make_walk(config, env, networks)
-    learn = _make_learn(config, env, networks, divide_robots)
+    update = make_update(config, env, networks, divide_robots)
     constants = PpoParams.of(config)
 
     def train_step(
@@ -64,15 +64,47 @@ def make_train_step(
         numbers = constants if params is None else params
         key, walk_key, learn_key = jax.random.split(state.key, 3)
         state, batch, walked = walk(world, state, numbers, walk_key)
+        state, learned = update(state, batch, learn_key, numbers)
+        return state.replace(key=key), walked | learned  # type: ignore[attr-defined]
+
+    return train_step
+
+
+def make_update(
+    config: RunConfig,
+    env: SteeringEnv,
+    networks: PPONetworks,
+    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+) -> Callable[..., tuple[TrainState, Metrics]]:
+    """Return the second half of the train step: learn from a batch, whoever walked it.
+
+    The ratios of the loss are against the policy that walked, whose log-probabilities are in the
+    batch: it need not be the present one.
+
+    Args:
+        config: of the run.
+        env: the task.
+        networks: actor and critic.
+        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+
+    Returns:
+        A function (state, batch [time, robots], key, hyperparameters) -> (state after one update,
+        metrics); without hyperparameters the configuration's.
+    """
+    learn = _make_learn(config, env, networks, divide_robots)
+    constants = PpoParams.of(config)
+
+    def update(
+        state: TrainState, batch: Any, key: Array, numbers: PpoParams = constants
+    ) -> tuple[TrainState, Metrics]:
         normaliser = update_normaliser(state.normaliser, batch.observation)
-        weights, optimiser, learned = learn(state, normaliser, batch, numbers, learn_key)
+        weights, optimiser, learned = learn(state, normaliser, batch, numbers, key)
         averaged = _average(config.ppo.averaging, state, weights)
         state = state.replace(  # type: ignore[attr-defined]
             params=weights,
             averaged=averaged,
             optimiser=optimiser,
             normaliser=normaliser,
-            key=key,
             update=state.update + 1,
         )
         finite = {
@@ -81,9 +113,9 @@ def make_train_step(
             "finite/loss": _all_finite(learned),
             "finite/parameters": _all_finite((weights, optimiser)),
         }
-        return state, walked | learned | finite
+        return state, learned | finite
 
-    return train_step
+    return update
 
 
 def _average(decay: float, state: TrainState, params: Any) -> Any:
@@ -105,9 +137,7 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
     def walk(world: World, state: TrainState, numbers: PpoParams, key: Array):
         pool_key, noise_key, restart_key = jax.random.split(key, 3)
         progress = state.update.astype(jnp.float32) / ppo.updates
-        weights = numbers.reward.replace(  # type: ignore[attr-defined]
-            failure=numbers.reward.failure + progress * numbers.failure_growth
-        )
+        weights = numbers.reward_weights(progress)
         pool = draw_starts(env, world, pool_key, ppo.candidates)
         restart_keys = jax.random.split(restart_key, ppo.unroll)
         # All exploration noise in one draw: one random key a batch, not one a robot.
