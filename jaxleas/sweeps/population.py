@@ -78,8 +78,11 @@ class Population:
                 lambda seed: initial_state(config, self.env, world, networks, seed), seeds
             )
 
-        self.train_step = jax.jit(_each_device(advance, mesh, 2), donate_argnums=1)
-        self.examine = jax.jit(_each_device(examine_all, mesh, 2))
+        options = _compiler_options(mesh)
+        self.train_step = jax.jit(
+            _each_device(advance, mesh, 2), donate_argnums=1, compiler_options=options
+        )
+        self.examine = jax.jit(_each_device(examine_all, mesh, 2), compiler_options=options)
         compiled = jax.jit(_each_device(begin, mesh, 1))
         seeds = np.array([each.seed for each in self.configs], np.int32)
         self.fresh_states = lambda: compiled(self.world, self.place(seeds))
@@ -143,6 +146,12 @@ def _mesh(members: int) -> Mesh:
     devices = jax.local_devices()
     count = next(n for n in range(min(members, len(devices)), 0, -1) if members % n == 0)
     return Mesh(np.array(devices[:count]), (AXIS,))
+
+
+def _compiler_options(mesh: Mesh) -> dict[str, Any] | None:
+    """Give each core its own members, rather than all cores a part of every matrix product."""
+    several_cores = jax.default_backend() == "cpu" and mesh.size > 1
+    return {"xla_cpu_multi_thread_eigen": False} if several_cores else None
 
 
 def _each_device(function: Callable, mesh: Mesh, arguments: int) -> Callable:

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -113,8 +113,12 @@ class RayJobs:
     Ray, begins the job of a dead worker again, so that deaths are counted in one place.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, function: Callable[[str], str] | None = None) -> None:
         """Connect to Ray.
+
+        Args:
+            count: of jobs at the same time.
+            function: that does the job whose file it is given, and returns its last words.
 
         Raises:
             InputError: Ray is not installed or does not answer.
@@ -123,7 +127,7 @@ class RayJobs:
         self._ray: Any = import_module("ray")
         # A process of its own for every job: JAX's devices are chosen once in a process.
         options = {"max_retries": 0, "num_cpus": 1, "max_calls": 1}
-        self._remote = self._ray.remote(**options)(_work_in_ray)
+        self._remote = self._ray.remote(**options)(function or _work_in_ray)
         self.count = count
         self._flying: dict[Any, Path] = {}
 

@@ -41,6 +41,15 @@ OTHER = {
 }
 
 
+@pytest.fixture
+def compiled_once(tmp_path):
+    """Keep compiled programs for as long as a test: it goes on with the same population."""
+    before = jax.config.read("jax_compilation_cache_dir")
+    jax.config.update("jax_compilation_cache_dir", str(tmp_path / "xla"))
+    yield
+    jax.config.update("jax_compilation_cache_dir", before)
+
+
 def rows_of(run):
     rows = [json.loads(line) for line in (run / "metrics.jsonl").read_text().splitlines()]
     return [{name: value for name, value in row.items() if name != "seconds"} for row in rows]
@@ -89,8 +98,9 @@ def test_a_member_is_what_it_would_be_alone(tmp_path):
         train(configs[1], run)
     mine, alone = rows_of(runs[1]), rows_of(tmp_path / "alone")
     assert [row.keys() for row in mine] == [row.keys() for row in alone]
-    for name in alone[0]:
-        np.testing.assert_allclose(mine[0][name], alone[0][name], rtol=2e-4, atol=2e-5)
+    for name in alone[0]:  # the first two updates: later ones magnify rounding
+        for row in range(2):
+            np.testing.assert_allclose(mine[row][name], alone[row][name], rtol=1e-4, atol=1e-5)
     with np.load(runs[1] / "policy.npz") as one, np.load(tmp_path / "alone/policy.npz") as other:
         assert one.files == other.files
         assert str(one["metadata"]) == str(other["metadata"])
@@ -100,7 +110,7 @@ def test_a_member_is_what_it_would_be_alone(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("brax_ranks")
+@pytest.mark.usefixtures("brax_ranks", "compiled_once")
 def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkeypatch):
     space = {"ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True)}
     values = tuple({"ppo.learning_rate": rate} for rate in (1e-3, 3e-3, 5e-3))
