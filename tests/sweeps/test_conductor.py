@@ -188,21 +188,3 @@ def test_a_trial_cut_short_while_it_was_drawn_is_drawn_to_the_end(tmp_path):
     assert "ppo.mirror" in values
     assert again.ask().number == trial.number + 1
     folder.close()
-
-
-@pytest.mark.parametrize(
-    ("storage", "said"),
-    [
-        ("somewhere", "give grpc://HOST:PORT, a database URL"),
-        ("grpc://localhost", "a storage proxy is grpc://HOST:PORT"),
-        ("sqlite:////nowhere/at/all.db", "cannot be reached"),
-        ("oracel://host/db", "--storage oracel://host/db"),
-    ],
-)
-def test_a_storage_that_cannot_be_reached_is_one_sentence(tmp_path, storage, said):
-    sweep = open_sweep(write_sweep(tmp_path))
-    folder = open_folder(tmp_path / "out", sweep)
-    with pytest.raises(InputError, match=said) as refusal:
-        Study(sweep, folder, storage)
-    assert "\n" not in str(refusal.value)
-    folder.close()

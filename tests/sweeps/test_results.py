@@ -4,18 +4,22 @@ import csv
 import html.parser
 import json
 import re
+from types import SimpleNamespace
 
 import pytest
 
 from jaxleas.files import write_text
+from jaxleas.sweeps import objectives
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.charts import place_on
-from jaxleas.sweeps.config import Dimension, TimeToSuccess
+from jaxleas.sweeps.config import Dimension, Exact, TimeToSuccess
 from jaxleas.sweeps.folder import open_folder
 from jaxleas.sweeps.objectives import measure, never
 from jaxleas.sweeps.report import report_html
 from jaxleas.sweeps.results import TrialResult, best_of, plain_table, write_results
 from jaxleas.sweeps.study import read_results
+from jaxleas.training.policy import write_policy
+from tests.guide.walkers import random_policy
 from tests.sweeps.files import write_sweep
 
 SPACE = {
@@ -59,6 +63,25 @@ def test_held_out_is_the_success_of_the_policy_that_is_kept(tmp_path):
     sweep = open_sweep(write_sweep(tmp_path))
     run = rows(tmp_path / "run", [0.2, 0.7, None, 0.6])
     assert measure(run, sweep.config.objectives, 2560) == {"held_out": 0.7}
+
+
+def test_exact_success_is_the_mean_over_the_cells_of_held_out_suites(tmp_path, monkeypatch):
+    asked = []
+
+    def judge(env, walkers, suite, planners):
+        asked.append((suite.name, [cell.starts for cell in suite.cells], *planners))
+        return [SimpleNamespace(planned=share) for share in (0.5, None, 1.0)]
+
+    monkeypatch.setattr(objectives, "judge_exact", judge)
+    (tmp_path / "run").mkdir()
+    write_policy(tmp_path / "run/policy.npz", random_policy())
+    exact = Exact(measure="exact", planner="sl1m", suites=("hole", "wall"), starts=3)
+    assert measure(tmp_path / "run", [exact], 1) == {"exact_sl1m": pytest.approx(0.5)}
+    assert [(name, planner) for name, _, planner in asked] == [
+        ("hole_held_out", "sl1m"),
+        ("wall_held_out", "sl1m"),
+    ]
+    assert all(set(starts) == {3} for _, starts, _ in asked)
 
 
 def trials() -> list[TrialResult]:
