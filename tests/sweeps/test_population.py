@@ -41,11 +41,11 @@ OTHER = {
 }
 
 
-@pytest.fixture
-def compiled_once(tmp_path):
-    """Keep compiled programs for as long as a test: it goes on with the same population."""
-    before = jax.config.read("jax_compilation_cache_dir")
-    jax.config.update("jax_compilation_cache_dir", str(tmp_path / "xla"))
+@pytest.fixture(scope="module")
+def compiled_once(tmp_path_factory):
+    """Keep compiled programs for this file: all its populations are of one program."""
+    before = jax.config.jax_compilation_cache_dir  # type: ignore[attr-defined]
+    jax.config.update("jax_compilation_cache_dir", str(tmp_path_factory.mktemp("xla")))
     yield
     jax.config.update("jax_compilation_cache_dir", before)
 
@@ -89,7 +89,7 @@ def test_a_populations_folder_is_one_populations(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("brax_ranks")
+@pytest.mark.usefixtures("brax_ranks", "compiled_once")
 def test_a_member_is_what_it_would_be_alone(tmp_path):
     configs = (tiny(), with_values(tiny(), OTHER, "test"))
     runs = [tmp_path / "member_00", tmp_path / "member_01"]
@@ -113,16 +113,16 @@ def test_a_member_is_what_it_would_be_alone(tmp_path):
 @pytest.mark.usefixtures("brax_ranks", "compiled_once")
 def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkeypatch):
     space = {"ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True)}
-    values = tuple({"ppo.learning_rate": rate} for rate in (1e-3, 3e-3, 5e-3))
+    values = tuple({"ppo.learning_rate": rate} for rate in (1e-3, 5e-3))
     configs = tuple(
         with_values(tiny(), {**each, "seed": seed}, "test") for seed, each in enumerate(values)
     )
-    members = Members(configs, values, space, EvolutionConfig(every=1, share=0.34), seed=5)
+    members = Members(configs, values, space, EvolutionConfig(every=1), seed=5)
     whole, cut = tmp_path / "whole", tmp_path / "cut"
-    first = train_population(members, [whole / f"m{n}" for n in range(3)], whole)
+    first = train_population(members, [whole / f"m{n}" for n in range(2)], whole)
     rounds = read_history(whole / "history.jsonl")
     assert [row["step"] for row in rounds] == [640 * n for n in (2, 4, 6)]
-    assert all(row["parents"] != [0, 1, 2] for row in rounds)
+    assert all(row["parents"] in ([0, 0], [1, 1]) for row in rounds)
 
     calls = iter(range(100))
     monkeypatch.setattr(
@@ -131,12 +131,12 @@ def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkey
         raising=False,
     )
     with pytest.raises(InterruptedRunError, match="the same command goes on"):
-        train_population(members, [cut / f"m{n}" for n in range(3)], cut)
+        train_population(members, [cut / f"m{n}" for n in range(2)], cut)
     monkeypatch.undo()
-    again = train_population(members, [cut / f"m{n}" for n in range(3)], cut)
+    again = train_population(members, [cut / f"m{n}" for n in range(2)], cut)
     assert read_history(cut / "history.jsonl") == rounds
     assert [(each.best, each.values) for each in first] == [
         (each.best, each.values) for each in again
     ]
-    for number in range(3):
+    for number in range(2):
         assert rows_of(whole / f"m{number}") == rows_of(cut / f"m{number}")
