@@ -7,17 +7,22 @@ import random
 import signal
 import subprocess
 import sys
+import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
+from jaxleas.sweeps.job import patiently
+from jaxleas.sweeps.results import TrialResult
+from jaxleas.sweeps.run_folders import hold_run_folder
 from jaxleas.sweeps.study import Study, read_results
 from jaxleas.types import InputError
 from tests.sweeps.files import write_sweep
 from tests.sweeps.pretended import conduct
-from tests.training.runs import ROOT
+from tests.training.runs import ROOT, tiny
 
 pytest.importorskip("optuna", reason="the extra sweep is not installed")
 SPACE = {
@@ -46,9 +51,7 @@ def told(out) -> int:
 @pytest.mark.parametrize("vectorised", [False, "auto"])
 def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
     space = SPACE if not vectorised else {"ppo.learning_rate": SPACE["ppo.learning_rate"]}
-    path = write_sweep(
-        tmp_path, space=space, trials=20, parallel=2, vectorised=vectorised, seeds=[0, 1]
-    )
+    path = write_sweep(tmp_path, space=space, trials=20, parallel=2, vectorised=vectorised)
     out, stream = tmp_path / "out", random.Random(7)
     for kill in range(3):
         process = start(path, out)
@@ -62,13 +65,14 @@ def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
     assert process.wait(120) == 0, process.communicate()
     results = read_results(out)
     assert [each.number for each in results] == list(range(20))
-    assert all(each.state == "done" and len(each.seeds) == 2 for each in results)
+    assert all(each.state == "done" and len(each.seeds) == 1 for each in results)
     for each in results:
         assert each.values["held_out"] == pytest.approx(
             min(1.0, 100 * each.params["ppo.learning_rate"])
         )
-    diaries = [run / "diary" for run in out.glob("trials/*/seed_[01]")]
-    assert len(diaries) == 40
+    diaries = [run / "diary" for run in out.glob("trials/*/seed_0")]
+    assert len(diaries) == 20
+    assert all(diary.read_text().split().count("ended") == 1 for diary in diaries)
     rows = list(csv.DictReader((out / "results.csv").open()))
     assert [int(row["trial"]) for row in rows] == list(range(20))
 
@@ -188,3 +192,51 @@ def test_a_trial_cut_short_while_it_was_drawn_is_drawn_to_the_end(tmp_path):
     assert "ppo.mirror" in values
     assert again.ask().number == trial.number + 1
     folder.close()
+
+
+@pytest.mark.parametrize("pruner", ["median", "hyperband"])
+def test_pruners_end_the_worse_half_and_never_the_best(tmp_path, pruner):
+    path = write_sweep(tmp_path, trials=16, pruner=pruner, startup_trials=3, sampler="random")
+    sweep = open_sweep(path)
+    folder = open_folder(tmp_path / "out", sweep)
+    study = Study(sweep, folder, None)
+    pruned = []
+    for number in range(16):
+        trial, good = study.ask(), number % 2 == 0
+        values = study.draw(trial)
+        ends = (study.report(trial, n, n / 4 if good else 0.01) for n in range(1, 5))
+        state = "pruned" if any(ends) else "done"
+        pruned += [good] if state == "pruned" else []
+        success = {"held_out": 1.0 if good else 0.01} if state == "done" else {}
+        study.tell(trial, TrialResult(number, state, values, success, {}))
+    folder.close()
+    assert study.ask() is None
+    assert len(study.results()) == 16
+    assert len(pruned) >= 3
+    assert not any(pruned)
+
+
+def test_a_job_waits_for_a_worker_that_is_about_to_let_go(tmp_path):
+    path = tmp_path / "run"
+    held = hold_run_folder(path, tiny(), ["test"])
+    threading.Timer(0.7, held.close).start()
+    patiently(lambda where: hold_run_folder(Path(where), tiny(), ["test"]).close(), path)
+    held = hold_run_folder(path, tiny(), ["test"])
+    with pytest.raises(InputError, match="in use"):
+        patiently(lambda where: hold_run_folder(Path(where), tiny(), ["test"]), path, 0.0)
+    held.close()
+
+
+def test_a_run_folder_whose_making_was_cut_short_is_made_again(tmp_path):
+    path = tmp_path / "run"
+    path.mkdir()
+    (path / "config.yaml").write_text("seed: 0\n")
+    (path / "lock").write_text("")
+    hold_run_folder(path, tiny(), ["test"]).close()
+    assert (path / "provenance.json").is_file()
+    with pytest.raises(InputError, match="another configuration"):
+        hold_run_folder(path, tiny(clip=0.1), ["test"])
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/thesis.tex").write_text("")
+    with pytest.raises(InputError, match="not empty"):
+        hold_run_folder(tmp_path / "other", tiny(), ["test"])
