@@ -10,7 +10,7 @@ from jaxleas.types.errors import InputError
 
 
 def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Return what each leaf is, and the arrays of those that are arrays.
+    """Return what each leaf is, and copies of those that are arrays.
 
     Args:
         state: a pytree of arrays, typed random keys and Python numbers.
@@ -28,9 +28,9 @@ def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
             entry["value"] = leaf  # JSON keeps Python's numbers exactly
         elif _is_key(leaf):
             entry["random_key"] = str(jax.random.key_impl(leaf))
-            arrays[name] = np.asarray(jax.random.key_data(leaf))
+            arrays[name] = np.array(jax.random.key_data(leaf))
         elif isinstance(leaf, jax.Array | np.ndarray | np.generic):
-            arrays[name] = np.asarray(leaf)
+            arrays[name] = np.array(leaf)  # on a CPU `asarray` would show JAX's own memory
         else:
             raise TypeError(f"{name} is a {type(leaf).__name__}, which no checkpoint can hold")
         entries.append(entry)
