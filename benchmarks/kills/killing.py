@@ -33,6 +33,7 @@ class Killer:
         self.failures: list[str] = []
         self._by: Counter[str] = Counter()
         self._lost_steps = 0
+        self._damaged: dict[Path, bytes] = {}  # by us, and what they held then
         self._config = folder / "tiny.yaml"
         write_config(self._config)
         self._run = folder / "run"
@@ -120,14 +121,19 @@ class Killer:
         if not (self._run / "provenance.json").is_file():
             self._by["at birth"] += 1
             return
+        still = {
+            path: bytes_
+            for path, bytes_ in self._damaged.items()
+            if path.is_file() and path.read_bytes() == bytes_
+        }
         try:
-            content(self._run)
+            content(self._run, still)
             RunFolder.open(self._run, needs_checkpoint=False)
         except (InputError, DamagedError, OSError) as error:
             self._by["corrupt"] += 1
             self.failures.append(f"corrupt after {how}: {error!r}")
         if how == "power cut":
-            cut_power(self._draw, self._run)
+            self._damaged = still | cut_power(self._draw, self._run)
 
     def _compare(self) -> None:
         self._by["ended"] += 1

@@ -65,7 +65,8 @@ def draw_moment(draw: random.Random, run: Path, rows: int, seconds: float) -> Mo
     if when == "time":
         return Moment("time", how, draw.uniform(0.0, seconds), 0.0)
     if when == "progress":
-        return Moment("progress", how, draw.randint(rows_of(run) + 1, rows), draw.uniform(0, 0.05))
+        target = draw.randint(min(rows_of(run) + 1, rows), rows)
+        return Moment("progress", how, target, draw.uniform(0, 0.05))
     return Moment("writing", how, draw.randint(1, 4), draw.uniform(0.0, 0.004))
 
 
@@ -74,12 +75,16 @@ def signal_of(how: How) -> signal.Signals:
     return signal.SIGTERM if how == "SIGTERM" else signal.SIGKILL
 
 
-def cut_power(draw: random.Random, run: Path) -> str:
-    """Damage the newest checkpoint and the last rows as a power cut might; say what was done."""
-    done = []
+def cut_power(draw: random.Random, run: Path) -> dict[Path, bytes]:
+    """Damage the newest checkpoint and the last rows as a power cut might.
+
+    Returns:
+        The damaged checkpoint and what it holds now, if there was one.
+    """
+    damaged = {}
     checkpoints = sorted((run / "checkpoints").glob("step_*.npz"))
     if checkpoints:
-        done.append(f"{checkpoints[-1].name} {_damage(draw, checkpoints[-1])}")
+        damaged[checkpoints[-1]] = _damage(draw, checkpoints[-1])
     metrics = run / "metrics.jsonl"
     if metrics.is_file():
         # Rows up to the newest checkpoint were on the disk before it; later ones may be lost.
@@ -87,8 +92,7 @@ def cut_power(draw: random.Random, run: Path) -> str:
         whole = metrics.read_bytes()
         end = draw.randint(kept, len(whole))
         metrics.write_bytes(whole[:end] + draw.choice((b"", b"\0" * 40, b'{"step": 7')))
-        done.append(f"metrics.jsonl cut from {len(whole)} to {end}")
-    return ", ".join(done)
+    return damaged
 
 
 def rows_of(run: Path) -> int:
@@ -99,7 +103,7 @@ def rows_of(run: Path) -> int:
         return 0
 
 
-def _damage(draw: random.Random, path: Path) -> str:
+def _damage(draw: random.Random, path: Path) -> bytes:
     whole = bytearray(path.read_bytes())
     at = draw.randrange(len(whole))
     kind = draw.choice(("truncated", "zeroed from", "flipped at"))
@@ -110,7 +114,7 @@ def _damage(draw: random.Random, path: Path) -> str:
     else:
         whole[at] ^= 1 << draw.randrange(8)
     path.write_bytes(whole)
-    return f"{kind} {at}"
+    return bytes(whole)
 
 
 def _length_up_to(metrics: Path, step: int) -> int:

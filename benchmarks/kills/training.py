@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -89,16 +89,20 @@ def _train(arguments: Sequence[str], log: Path) -> int:
     return code
 
 
-def content(run: Path) -> dict[str, object]:
+def content(run: Path, but: Collection[Path] = ()) -> dict[str, object]:
     """Return all that a run has come to, but for wall time: to compare bit by bit.
+
+    Args:
+        run: folder.
+        but: files to pass over.
 
     Raises:
         InputError: a file cannot be read whole.
         DamagedError: likewise.
     """
     found: dict[str, object] = {"config": (run / "config.yaml").read_text()}
-    for path in [*(run / "checkpoints").iterdir(), run / "policy.npz"]:
-        if path.is_file():
+    for path in [*(run / "checkpoints").glob("*"), run / "policy.npz"]:
+        if path.is_file() and not path.name.startswith(".") and path not in but:
             arrays = read_arrays(path)
             found[path.name] = {name: _bits(array) for name, array in arrays.items()}
     metrics = run / "metrics.jsonl"

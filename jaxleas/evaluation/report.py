@@ -195,7 +195,10 @@ def _text(path: Path) -> str:
 def _provenance(path: Path) -> list[tuple[str, str]]:
     if not path.is_file():
         return []
-    return [(key, _plain(value)) for key, value in read_json(path).items()]
+    record = read_json(path)
+    if not isinstance(record, dict):
+        raise InputError(f"{path} is no record of a run: it needs an object")
+    return [(key, _plain(value)) for key, value in record.items()]
 
 
 def _plain(value: Any) -> str:

@@ -10,7 +10,13 @@ from jaxleas.files.atomic import (
 )
 from jaxleas.files.json_text import parse_json
 from jaxleas.files.lock import FolderLock
-from jaxleas.files.reading import read_bytes, read_json, read_npz, require_version
+from jaxleas.files.reading import (
+    read_bytes,
+    read_json,
+    read_npz,
+    require_version,
+    require_version_array,
+)
 
 __all__ = [
     "FolderLock",
@@ -20,6 +26,7 @@ __all__ = [
     "read_json",
     "read_npz",
     "require_version",
+    "require_version_array",
     "sweep_temporaries",
     "write_bytes",
     "write_json",

@@ -116,6 +116,8 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
             raise DamagedError(f"{entry.filename} is cut short")
     flat = np.frombuffer(bytearray(content), kind, count)  # a bytearray's numbers may be changed
     array = flat.reshape(shape, order="F" if fortran else "C")
+    if not kind.isnative:  # JAX takes no other byte order
+        array = array.astype(kind.newbyteorder("="))
     if kind.kind == "U":
         _require_unicode(array, entry.filename)
     return array

@@ -83,6 +83,14 @@ def require_version(content: dict[str, Any], version: int, where: str | Path) ->
         )
 
 
+def require_version_array(arrays: dict[str, np.ndarray], version: int, where: str | Path) -> None:
+    """Refuse a .npz whose array `version` says another one; see `require_version`."""
+    found = arrays.get("version")
+    if found is not None:
+        stated = found.item() if found.size == 1 else f"an array of shape {found.shape}"
+        require_version({"version": stated}, version, where)
+
+
 def _require_file(path: str | Path) -> None:
     try:
         if Path(path).is_dir():
