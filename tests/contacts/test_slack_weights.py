@@ -8,7 +8,7 @@ from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.from_guide import problem_from_guide
 from jaxleas.contacts.planners import plan_sl1m
 from jaxleas.contacts.relaxation import relax
-from jaxleas.contacts.slack_weights import slack_weights
+from jaxleas.contacts.slack_weights import SlackWeights, slack_weights
 from jaxleas.contacts.steps import make_steps
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
@@ -66,7 +66,7 @@ def test_the_surface_under_the_foot_weighs_as_much_as_all_the_others(asked):
 
 
 def test_what_the_guide_chooses_needs_no_combinations():
-    made = {"uniform": [], "guide": []}
+    made: dict[SlackWeights, list[bool]] = {"uniform": [], "guide": []}
     for aside in (-0.25, -0.1, 0.05):
         asked = problem_from_guide(guide(aside), Scene(TILES))
         for weights, plans in made.items():
