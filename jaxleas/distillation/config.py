@@ -54,6 +54,16 @@ class PracticeConfig(Strict):
     """Weights of the reward that differ from those of the policy's own training (env.reward)."""
 
 
+class FaithfulConfig(Strict):
+    """Mode `faithful`: how walks and verdicts overlap."""
+
+    robots: Count = 128
+    """That walk a whole episode at once, a wave."""
+    ahead: Annotated[int, Field(ge=0)] = 1
+    """Waves that are walked while another is judged: 0 keeps the device waiting for the planner,
+    more make what is learned from older."""
+
+
 class JudgeConfig(Strict):
     """How a round's policy is judged by the exact planner, on held-out terrain."""
 
@@ -65,6 +75,8 @@ class JudgeConfig(Strict):
 class DistillationConfig(Strict):
     """One distillation: a policy and a surrogate, refined in turn against one exact planner."""
 
+    mode: Literal["surrogate", "faithful"] = "surrogate"
+    """Who ends episodes in practice: a surrogate of the planner, or the exact planner itself."""
     planner: Literal["sampling", "mip", "sl1m"] = "sampling"
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""
@@ -79,4 +91,5 @@ class DistillationConfig(Strict):
     collect: CollectConfig = CollectConfig()
     fit: FitSettings = FitSettings()
     practice: PracticeConfig = PracticeConfig()
+    faithful: FaithfulConfig = FaithfulConfig()
     judge: JudgeConfig = JudgeConfig()

@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.faithful import Faithful
+from jaxleas.distillation.faithful_practice import practise_faithfully
 from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.judging import exact_success, judge_round, summary
 from jaxleas.distillation.labelling import Ground, label_round
@@ -158,9 +160,11 @@ class Distillation:
         learned: Learned,
         surrogate: Surrogate | None,
         say: Say,
-    ) -> tuple[RoundResult, SteeringPolicy, Learned, Surrogate]:
+    ) -> tuple[RoundResult, SteeringPolicy, Learned, Surrogate | None]:
         """Return the result of one round, and what the next begins with."""
         folder = self.folder.round(number)
+        if self.config.mode == "faithful":
+            return self._faithful_round(number, folder, learned, say)
         labelled = self._label(number, folder, policy, surrogate, say)
         begun = time.perf_counter()
         surrogate = self._fit(number, folder, say)
@@ -173,6 +177,28 @@ class Distillation:
         policy, (_, learned) = read_policy(folder.policy), read_run(folder.run)
         result = self._judge(number, policy, say, seconds, surrogate.report, labelled["guides"])
         return result, policy, learned, surrogate
+
+    def _faithful_round(
+        self, number: int, folder: RoundFolder, learned: Learned, say: Say
+    ) -> tuple[RoundResult, SteeringPolicy, Learned, None]:
+        """Return the same where the exact planner itself ends the episodes: no labels, no fit."""
+        if not folder.practised.is_file():
+            say(f"round {number}: practice, the exact planner in the loop")
+            config = practice_config(self.config, self.run_config)
+            ground = self.ground
+            training = Faithful(
+                config,
+                self.config.faithful,
+                SteeringEnv(config.env),
+                ground.world,
+                ground.scenes,
+                self.judge,
+            )
+            practise_faithfully(folder, training, learned)
+        seconds = {"practice": read_json(folder.practised)["seconds"]}
+        policy = read_policy(folder.policy)
+        _, learned = read_run(folder.run)
+        return self._judge(number, policy, say, seconds, None, 0), policy, learned, None
 
     def _label(
         self,
@@ -249,9 +275,9 @@ class Distillation:
         write_json(self.folder.table, {"version": 1, "rounds": [asdict(each) for each in results]})
         best = max(results[1:], key=lambda result: (result.success, -result.round))
         source = self.folder.round(best.round)
-        for file, target in (
-            (source.policy, self.folder.policy),
-            (source.surrogate, self.folder.surrogate),
-        ):
+        files = {source.policy: self.folder.policy}
+        if self.config.mode == "surrogate":
+            files[source.surrogate] = self.folder.surrogate
+        for file, target in files.items():
             with atomic_path(target) as temporary:
                 shutil.copyfile(file, temporary)

@@ -75,14 +75,23 @@ def practise(
     foresight = None if surrogate is None else SurrogateForesight(surrogate, threshold)
     with run:
         train(config, run, foresight=foresight, learned=learned)
+    conclude(folder, config, time.perf_counter() - begun)
+
+
+def conclude(folder: RoundFolder, config: RunConfig, seconds: float) -> None:
+    """Keep the average that a practice's run ended with as the round's policy.
+
+    Args:
+        folder: of the round.
+        config: of the run.
+        seconds: that the practice took.
+    """
     _, after = read_run(folder.run)
     env = SteeringEnv(config.env)
     policy = policy_of(env, config.network.activation, after.normaliser, after.averaged)
     write_policy(folder.policy, policy)
-    seconds = round(time.perf_counter() - begun, 1)
-    write_json(
-        folder.practised, {"steps": config.ppo.updates * config.ppo.batch, "seconds": seconds}
-    )
+    steps = config.ppo.updates * config.ppo.batch
+    write_json(folder.practised, {"steps": steps, "seconds": round(seconds, 1)})
 
 
 def read_run(path: str | Path) -> tuple[RunConfig, Learned]:

@@ -14,6 +14,7 @@ from jaxleas.evaluation.examination import (
     run_evaluations,
 )
 from jaxleas.evaluation.progress import Reporter
+from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, write_evaluation
 from jaxleas.evaluation.scene_pictures import draw_side_by_side
 from jaxleas.evaluation.side_by_side import side_by_side as table_of
@@ -40,6 +41,8 @@ def evaluate(
     slack_weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     pictures: Path | None = None,
+    surrogate: Path | None = None,
+    threshold: float | None = None,
 ) -> Evaluation:
     """Judge a policy on terrains it was never trained on, and print the table.
 
@@ -67,6 +70,9 @@ def evaluate(
         slack_weights: of SL1M's slacks: uniform or guide.
         processes: that plan contacts at the same time; all cores by default.
         pictures: folder for pictures of the guide paths.
+        surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
+            they end early, as stopped. The result is kept in --json only.
+        threshold: least probability of success, by the surrogate, to go on with: the risk dial.
 
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
@@ -77,8 +83,9 @@ def evaluate(
     further = parse_policies(_words(policies) or ())
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
-    candidate = load_candidate(run)
-    folder = Path(run) if Path(run).is_dir() else None
+    refusal = load_refusal(surrogate, threshold)
+    candidate = load_candidate(run, refusal)
+    folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
             evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
