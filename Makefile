@@ -8,7 +8,6 @@ BENCH ?=
 # What only the tests need is not installed to train: two locked lists, two stamps.
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
-DOCS_STAMP := $(VENV)/.docs-installed
 
 .PHONY: train test test-all lint bench docs lock clean
 
@@ -36,7 +35,7 @@ bench: $(DEV_STAMP)
 	$(BIN)/python -m benchmarks $(BENCH)
 
 # The documentation site, build/site; broken links fail, and so does whatever a page would fetch.
-docs: $(DOCS_STAMP)
+docs: $(DEV_STAMP)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 	$(BIN)/python scripts/check_site.py build/site
 
@@ -47,7 +46,6 @@ lock: $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet uv
 	$(COMPILE) --output-file requirements/run.txt
 	$(COMPILE) --extra dev --output-file requirements/dev.txt
-	$(COMPILE) --extra docs --output-file requirements/docs.txt
 
 clean:
 	rm -rf build dist .pytest_cache .ruff_cache
@@ -62,10 +60,5 @@ $(RUN_STAMP): requirements/run.txt pyproject.toml | $(VENV)/bin/python
 
 $(DEV_STAMP): requirements/dev.txt pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet -r requirements/dev.txt
-	$(BIN)/python -m pip install --quiet --no-deps --editable .
-	touch $@ $(RUN_STAMP)
-
-$(DOCS_STAMP): requirements/docs.txt pyproject.toml | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet -r requirements/docs.txt
 	$(BIN)/python -m pip install --quiet --no-deps --editable .
 	touch $@ $(RUN_STAMP)
