@@ -39,7 +39,8 @@ def distill(
     distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
     results = distillation.run(_Teller())
     print(table_of(results))
-    print(f"{folder.policy}: the best round's policy; {folder.surrogate}: its surrogate")
+    beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
+    print(f"{folder.policy}: the best round's policy{beside}")
 
 
 class _Teller:

@@ -5,6 +5,7 @@ start/                  run folder of the policy to begin with, where none was g
 round_<k>/labels/       scenes, guide paths and verdicts
 round_<k>/surrogate.npz fitted to the verdicts of all rounds so far
 round_<k>/run/          run folder of the policy's practice
+round_<k>/policy.npz    what practice ended with
 round_<k>/judged.json   the exact planner's verdicts on its policy; round_0 is the one begun with
 rounds.json             the table of all rounds
 policy.npz, surrogate.npz   of the best round
@@ -44,6 +45,11 @@ class RoundFolder:
     def run(self) -> Path:
         """Run folder of the practice."""
         return self.path / "run"
+
+    @property
+    def policy(self) -> Path:
+        """What practice ended with."""
+        return self.path / "policy.npz"
 
     @property
     def practised(self) -> Path:

@@ -24,6 +24,7 @@ def label(
     window: float | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
+    weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     workers: Literal["processes", "ray"] = "processes",
 ) -> None:
@@ -42,7 +43,9 @@ def label(
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
         time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
-        max_combinations: sl1m: after which it gives up, 2000 by default.
+        max_combinations: sl1m: after which it gives up, 2000 by default; 0: what the relaxation
+            leaves undecided fails.
+        weights: sl1m: of the slacks, uniform by default; guide: the guide path chooses.
         processes: working at the same time; all cores by default.
         workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
     """
@@ -67,6 +70,7 @@ def label(
         window=window,
         time_limit=time_limit,
         max_combinations=max_combinations,
+        weights=weights,
     )
     if processes is not None:
         require_count(processes)

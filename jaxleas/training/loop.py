@@ -103,6 +103,7 @@ def train(
     devices: Devices | None = None,
     foresight: Foresight | None = None,
     learned: Learned | None = None,
+    on_examined: Callable[[], None] = lambda: None,
 ) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
@@ -116,6 +117,8 @@ def train(
         devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
         learned: to begin with, in place of fresh networks; a resumed run has its own.
+        on_examined: called when an examination's results are in the run folder; what it raises ends
+            the training, and the folder can be gone on with.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -142,7 +145,7 @@ def train(
         ) as log,
         Interruption() as interruption,
     ):
-        desk = _Desk(trainer, run, checkpoints, log, progress, best)
+        desk = _Desk(trainer, run, checkpoints, log, progress, best, on_examined)
         _Session(trainer, interruption, desk).go_on(state)
     return read_policy(run.path / POLICY_FILE)
 
@@ -264,6 +267,7 @@ class _Desk:
     log: MetricsLog
     progress: Progress
     best: float
+    on_examined: Callable[[], None]
 
     def record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
         batch = self.trainer.config.ppo.batch
@@ -286,3 +290,5 @@ class _Desk:
             write_policy(self.run.path / POLICY_FILE, self.trainer.policy(state))
         step = done * self.trainer.config.ppo.batch
         self.checkpoints.save(step, state, {"best": self.best}, best_score=score)
+        if verdict:
+            self.on_examined()
