@@ -3,6 +3,9 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
+from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 
@@ -61,3 +64,11 @@ def verdict_from_json(value: Any, where: str) -> Verdict:
     if not isinstance(value, dict) or set(value) != names:
         raise InputError(f"{where} is no verdict: it needs the keys {', '.join(sorted(names))}")
     return Verdict(**value)
+
+
+def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
+    """Return the way of the root up to a configuration for each step [m]; None without step."""
+    if steps < 1:
+        return None
+    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
+    return float(np.linalg.norm(walked, axis=1).sum() / steps)
