@@ -1,4 +1,4 @@
-"""Refuse a built site that fetches anything from another host: python scripts/check_site.py SITE."""
+"""Refuse a built site that fetches from another host: python scripts/check_site.py SITE."""
 
 import re
 import sys

@@ -16,7 +16,7 @@ from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 _MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
-"""Guide paths, 8 for others: enough to work on abreast, few enough to do again when a worker dies."""
+"""Guide paths, 8 for others: enough to work on abreast, few to do again when a worker dies."""
 _TASKS_EACH = 4  # for every worker, so that all end at about the same time
 _ABREAST = "sampling"  # gains from few, large tasks instead: it walks their paths abreast
 
