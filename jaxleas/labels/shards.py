@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.files import read_json, require_version, write_json
+from jaxleas.labels.own_planner import OwnPlanner, source_of
 from jaxleas.labels.settings import PlannerSettings, seed_of
 from jaxleas.labels.verdict import Verdict, verdict_from_json, verdict_to_json
 from jaxleas.types.errors import InputError
@@ -67,8 +68,10 @@ def provenance_of(
     guides: Path, scene: Path, planner: str, settings: PlannerSettings
 ) -> dict[str, Any]:
     """Return where verdicts come from: planner, version, parameters, terrain, seed, guide paths."""
+    own = {"source": source_of(type(settings))} if isinstance(settings, OwnPlanner) else {}
     return {
         "planner": planner,
+        **own,
         "jaxleas": version("jaxleas"),
         "parameters": settings.model_dump(mode="json"),
         "seed": seed_of(settings),

@@ -4,8 +4,10 @@ from dataclasses import asdict, dataclass, fields
 from functools import cache
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel, ValidationError, create_model
 
+from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 
@@ -76,3 +78,11 @@ def verdict_from_json(value: Any, where: str) -> Verdict:
 def _model() -> type[BaseModel]:
     """Return what checks the types: a dataclass by itself takes anything."""
     return create_model("Verdict", **{each.name: (each.type, ...) for each in fields(Verdict)})  # type: ignore[call-overload]
+
+
+def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
+    """Return the way of the root up to a configuration for each step [m]; None without step."""
+    if steps < 1:
+        return None
+    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
+    return float(np.linalg.norm(walked, axis=1).sum() / steps)

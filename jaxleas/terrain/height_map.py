@@ -60,7 +60,7 @@ class HeightMap:
 
 
 def read_height_map(path: str | Path) -> HeightMap:
-    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` [x, y] [m].
+    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` x, y [m].
 
     Raises:
         InputError: says which array is missing or unusable, and what would do.
