@@ -4,7 +4,7 @@ from jaxleas.envs.steering.config import MotionLimits, RewardWeights, SteeringCo
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ICRA81, THESIS144, ObservationLayout, layout_named
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, restart_where, take
+from jaxleas.envs.steering.starts import draw_picks, draw_starts, restart_where, take
 from jaxleas.envs.steering.state import Outcome, Plan, SteeringState
 from jaxleas.envs.steering.world import World, make_world
 
@@ -21,6 +21,7 @@ __all__ = [
     "SteeringEnv",
     "SteeringState",
     "World",
+    "draw_picks",
     "draw_starts",
     "layout_named",
     "make_world",
