@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from jaxleas.types.errors import InputError
 
@@ -11,7 +11,7 @@ def fit(
     labels: Sequence[Path],
     *,
     out: Path,
-    planner: Literal["sampling", "mip", "sl1m"] | None = None,
+    planner: str | None = None,
     policy: Path | None = None,
     where: Sequence[Path] = (),
     epochs: int = 12,

@@ -7,15 +7,17 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from jaxleas.files import read_json
+from pydantic import BaseModel, Field, ValidationError
+
+from jaxleas.files import read_json, require_version
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.terrain.scene import read_scene
-from jaxleas.types import InputError
+from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64
 VERSION = 2  # of verdict files
@@ -76,13 +78,14 @@ def read_labels(
     keep_every = int(first["parameters"]["keep_every"])
     scenes: dict[str, int] = {}
     maps, parts, passed_over = [], [], 0
-    for content in contents:
+    for path, content in zip(files, contents, strict=True):
         provenance = content["provenance"]
         scene = finder.find(provenance["scene"])
         if provenance["scene"]["sha256"] not in scenes:
             scenes[provenance["scene"]["sha256"]] = len(maps)
             maps.append(rasterise(read_scene(scene), resolution))
         paths = read_guide_paths(finder.find(provenance["guides"])).paths
+        _require_paths(content, paths, path)
         verdicts = [each for each in content["verdicts"] if each.get("decided", True)]
         passed_over += len(content["verdicts"]) - len(verdicts)
         if not verdicts:
@@ -109,6 +112,35 @@ def read_labels(
     )
 
 
+class _File(BaseModel):
+    """What of a file's name and fingerprint is looked at."""
+
+    file: str
+    sha256: str
+
+
+class _Parameters(BaseModel):
+    keep_every: Annotated[int, Field(ge=1, le=100_000)]
+
+
+class _Provenance(BaseModel):
+    planner: str
+    parameters: _Parameters
+    scene: _File
+    guides: _File
+
+
+class _Verdict(BaseModel):
+    path: Annotated[int, Field(ge=0)]
+    last_index: Annotated[int, Field(ge=-1)]
+    decided: bool = True
+
+
+class _VerdictFile(BaseModel):
+    provenance: _Provenance
+    verdicts: list[_Verdict]
+
+
 def _whose(provenance: dict[str, Any]) -> tuple[Any, ...]:
     """Return what all verdicts that a surrogate learns from must have in common."""
     return provenance["planner"], provenance["parameters"], _robot(provenance)
@@ -121,21 +153,27 @@ def _robot(provenance: dict[str, Any]) -> str:
 
 def _read(path: Path) -> dict[str, Any]:
     content = read_json(path)
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is no verdict file: it needs an object")
+    require_version(content, VERSION, path)
     try:
-        if content["version"] != VERSION:
-            raise InputError(
-                f"{path} is a verdict file of version {content['version']}; this version reads"
-                f" {VERSION}: label again"
-            )
-        provenance = content["provenance"]
-        int(provenance["parameters"]["keep_every"])
-        for name in ("scene", "guides"):
-            str(provenance[name]["file"]), str(provenance[name]["sha256"])
-        for verdict in content["verdicts"]:
-            int(verdict["path"]), int(verdict["last_index"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{path} is no verdict file: {error!r}") from error
+        _VerdictFile.model_validate(content, strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        raise InputError(f"{path} is no verdict file: {key}: {first['msg']}") from error
     return content
+
+
+def _require_paths(content: dict[str, Any], paths: Sequence[GuidePath], path: Path) -> None:
+    """Refuse verdicts on guide paths, or on configurations, that there are not."""
+    for each in content["verdicts"]:
+        number, last = each["path"], each["last_index"]
+        if number >= len(paths) or last >= len(paths[number]):
+            raise InputError(
+                f"{path} holds a verdict on configuration {last} of guide path {number}, which the"
+                " guide path file does not have"
+            )
 
 
 class _Finder:
@@ -147,7 +185,7 @@ class _Finder:
 
     def find(self, named: dict[str, str]) -> Path:
         """Return the file of that name whose content is what the verdicts were made from."""
-        fingerprint, name = named["sha256"], Path(named["file"]).name
+        fingerprint, name = named["sha256"], Path(named["file"]).name  # never out of its folder
         if fingerprint in self.found:
             return self.found[fingerprint]
         changed = None
