@@ -70,9 +70,11 @@ def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
         assert each.values["held_out"] == pytest.approx(
             min(1.0, 100 * each.params["ppo.learning_rate"])
         )
-    diaries = [run / "diary" for run in out.glob("trials/*/seed_0")]
-    assert len(diaries) == 20
-    assert all(diary.read_text().split().count("ended") == 1 for diary in diaries)
+    runs = list(out.glob("trials/*/seed_0"))
+    assert len(runs) == 20
+    for run in runs:
+        steps = [json.loads(row)["step"] for row in (run / "metrics.jsonl").open()]
+        assert steps == [640, 1280, 1920, 2560]
     rows = list(csv.DictReader((out / "results.csv").open()))
     assert [int(row["trial"]) for row in rows] == list(range(20))
 
