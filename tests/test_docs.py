@@ -29,7 +29,7 @@ from tests.training.runs import tiny
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
-FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^```(\w*)(?: [^\n]*)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUNS = re.compile(r"^<!-- (runs.*?) -->\n```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -84,6 +84,8 @@ ALL_COMMANDS = sorted({(page, line) for page in PAGES for line in commands(page)
 @pytest.mark.parametrize(("page", "line"), ALL_COMMANDS, ids=name_of)
 def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
     words = shlex.split(line, comments=True)
+    while re.fullmatch(r"[A-Z_]+=.*", words[0]):  # variables of the environment
+        words.pop(0)
     match words:
         case ["jaxleas", *arguments]:
             assert parse_jaxleas(arguments, monkeypatch), line
@@ -99,7 +101,7 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
                 assert f'"{option}"' in source, f"{script} has no {option}"
         case ["make", target, *variables]:
             require_make(target, variables)
-        case ["source", ".venv/bin/activate"]:
+        case ["source", ".venv/bin/activate"] | ["pip", "install", *_] | ["git", "clone", *_]:
             pass
         case _:
             pytest.fail(f"{page.name}: this test does not know how to read {line!r}")

@@ -14,7 +14,8 @@ def label(
     *,
     scene: Path,
     out: Path,
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling",
+    planner: str = "sampling",
+    parameters: Sequence[str] | None = None,
     keep_every: int | None = None,
     samples: int | None = None,
     heuristic: Literal["fixed_step", "manipulability", "effort", "reference"] | None = None,
@@ -34,7 +35,8 @@ def label(
         guides: guide path files, .npz.
         scene: that they walk on, .json.
         out: folder of the verdict files; the same command goes on where it was interrupted.
-        planner: that judges.
+        planner: that judges: sampling, mip, sl1m, or MODULE:CLASS of your own.
+        parameters: of a planner of your own, as longest_step=0.3.
         keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
         samples: sampling: leg configurations in the data base, 25000 by default.
         heuristic: sampling: by which candidates are tried, fixed_step by default.
@@ -55,7 +57,7 @@ def label(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     from jaxleas.labels.label import label_shards, plan_shards
-    from jaxleas.labels.settings import settings_from
+    from jaxleas.labels.settings import settings_from, settings_of
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.labels.workers import require_count
 
@@ -71,6 +73,7 @@ def label(
         time_limit=time_limit,
         max_combinations=max_combinations,
         weights=weights,
+        **settings_of(parameters or ()),
     )
     if processes is not None:
         require_count(processes)
