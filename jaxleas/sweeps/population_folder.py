@@ -8,7 +8,6 @@ lock                held while a process trains
 """
 
 import json
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -44,7 +43,7 @@ def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
             )
         yield [path / f"member_{number:02d}" for number in range(len(members.configs))]
     finally:
-        os.close(lock)
+        lock.close()
 
 
 def _plain(members: Members) -> dict[str, Any]:

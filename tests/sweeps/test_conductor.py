@@ -169,7 +169,7 @@ def test_a_folder_is_one_sweeps_and_one_conductors(tmp_path):
     other = open_sweep(write_sweep(tmp_path, "other.yaml", seeds=[5]))
     more = open_sweep(write_sweep(tmp_path, "sweep.yaml", trials=9))
     held = open_folder(tmp_path / "out", sweep)
-    with pytest.raises(InputError, match="another process works in"):
+    with pytest.raises(InputError, match="is in use by"):
         open_folder(tmp_path / "out", sweep)
     held.close()
     with pytest.raises(InputError, match="is a sweep with another file"):

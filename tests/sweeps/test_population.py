@@ -77,7 +77,7 @@ def test_a_populations_folder_is_one_populations(tmp_path):
     out = tmp_path / "out"
     with (
         hold_population(out, members) as runs,
-        pytest.raises(InputError, match="another process works in"),
+        pytest.raises(InputError, match="is in use by"),
         hold_population(out, members),
     ):
         pass
