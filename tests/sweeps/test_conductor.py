@@ -80,17 +80,20 @@ def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
 
 
 def test_a_killed_worker_is_replaced_and_its_training_goes_on(tmp_path):
-    """The pretender kills itself once in the middle of every training."""
+    """The pretender kills itself once in every training, after its second examination."""
     script = tmp_path / "mortal.py"
     script.write_text(
-        "import json, os, pathlib, sys, threading, time\n"
+        "import json, os, pathlib, sys\n"
         "sys.path.insert(0, sys.argv[1])\n"
         "from tests.sweeps import pretender\n"
-        "job = json.loads(pathlib.Path(sys.argv[2]).read_text())\n"
-        "for each in job['trainings']:\n"
+        "def sleep(seconds):\n"
+        "    begun = (run / 'diary').read_text().split().count('begun')\n"
+        "    rows = run / 'metrics.jsonl'\n"
+        "    if begun == 1 and rows.is_file() and len(rows.read_text().splitlines()) == 2:\n"
+        "        os.kill(os.getpid(), 9)\n"
+        "pretender.time.sleep = sleep\n"
+        "for each in json.loads(pathlib.Path(sys.argv[2]).read_text())['trainings']:\n"
         "    run = pathlib.Path(each['run'])\n"
-        "    if not run.is_dir():\n"
-        "        threading.Timer(0.12, lambda: os.kill(os.getpid(), 9)).start()\n"
         "    pretender.pretend(run, json.loads(each['config']))\n"
     )
     path = write_sweep(tmp_path, space=SPACE, trials=2)

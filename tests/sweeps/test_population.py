@@ -8,10 +8,11 @@ import pytest
 
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
+from jaxleas.sweeps.history import read_history
 from jaxleas.sweeps.population import require_one_program
 from jaxleas.sweeps.population_config import Members, open_population
 from jaxleas.sweeps.population_folder import hold_population
-from jaxleas.sweeps.population_loop import read_history, train_population
+from jaxleas.sweeps.population_loop import train_population
 from jaxleas.training.configuration_values import with_values
 from jaxleas.training.loop import InterruptedRunError, train
 from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
