@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 CONFIG ?= configs/leas_p1.yaml
 RUN_DIR ?= runs/leas_p1
 BENCH ?=
+WORKERS ?= 2
 # What only the tests need is not installed to train: two locked lists, two stamps.
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
@@ -19,12 +20,15 @@ train: $(RUN_STAMP)
 	  $(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR); \
 	fi
 
+# Files of tests are dealt out to WORKERS processes: fixtures that train are made once a file.
+PYTEST = $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile
+
 # Slow tests guard headline claims: `make test-all` runs them, and so does `make test` in CI.
 test: $(DEV_STAMP)
-	$(BIN)/python -m pytest $(if $(filter true 1,$(CI)),,-m "not slow")
+	$(PYTEST) $(if $(filter true 1,$(CI)),,-m "not slow")
 
 test-all: $(DEV_STAMP)
-	$(BIN)/python -m pytest
+	$(PYTEST)
 
 lint: $(DEV_STAMP)
 	$(BIN)/ruff check .

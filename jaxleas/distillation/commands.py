@@ -27,6 +27,7 @@ def distill(
     from jaxleas.distillation.folder import DistillationFolder
     from jaxleas.distillation.opening import open_folder, train_start
     from jaxleas.distillation.table import table_of
+    from jaxleas.files import FolderLock
     from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.training.configuration import load_config
 
@@ -35,11 +36,13 @@ def distill(
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
     settled = open_folder(folder, load_config(DistillationConfig, config), start)
-    run = train_start(folder, settled)
-    distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
-    results = distillation.run(_Teller())
+    with FolderLock(folder.path, "the distillation", "give another --out"):
+        run = train_start(folder, settled)
+        distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
+        results = distillation.run(_Teller())
     print(table_of(results))
-    print(f"{folder.policy}: the best round's policy; {folder.surrogate}: its surrogate")
+    beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
+    print(f"{folder.policy}: the best round's policy{beside}")
 
 
 class _Teller:

@@ -16,6 +16,8 @@ from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.labels import Here, Judge, PlannerSettings, ProcessWorkers
 
 Results = dict[ResultKey, CellResult]
+_SAME = ("suite", "seed", "robot", "foresight")
+"""What must agree before results of one evaluation count in another."""
 
 
 def compare(
@@ -125,6 +127,7 @@ def _head(
         fingerprint=candidate.fingerprint,
         policies=dict(contenders.fingerprints),
         planners={name: judge.settings.model_dump(mode="json") for name, judge in judges.items()},
+        foresight=None if candidate.refusal is None else candidate.refusal.describe(),
         robot=candidate.env.config.robot,
         seed=suite.seed,
         created=now(),
@@ -139,7 +142,7 @@ def _merged(
 
     What the file knows of policies and planners that are not asked for now stays in it.
     """
-    if (before.suite, before.seed, before.robot) != (head.suite, head.seed, head.robot):
+    if any(getattr(before, name) != getattr(head, name) for name in _SAME):
         return head, {}
     results: Results = {}
     for result in before.cells:

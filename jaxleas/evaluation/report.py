@@ -15,10 +15,10 @@ from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.table import (
     HEADINGS,
-    THESIS,
     cell_title,
     filled_columns,
     method_title,
+    navigation,
     percent,
     rows,
 )
@@ -167,7 +167,7 @@ def success_rows(evaluation: Evaluation | None) -> list[SuccessRow]:
             if found:
                 values = [_value(found.get(kind)) for kind in KINDS]
                 table.append(SuccessRow(f"{yaw:.0f}°", method_title(method), values))
-        quoted = [(percent(THESIS.get((kind, yaw)), 0), "") for kind in KINDS]
+        quoted = [(percent(navigation(kind, yaw), 0), "") for kind in KINDS]
         table.append(SuccessRow(f"{yaw:.0f}°", "thesis, table 3.3", quoted))
     return table
 

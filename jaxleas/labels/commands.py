@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from jaxleas.types.errors import InputError
+
 if TYPE_CHECKING:
+    from jaxleas.files import FolderLock
     from jaxleas.labels.workers import Workers
 
 
@@ -24,6 +27,7 @@ def label(
     window: float | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
+    weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     workers: Literal["processes", "ray"] = "processes",
 ) -> None:
@@ -42,7 +46,9 @@ def label(
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
         time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
-        max_combinations: sl1m: after which it gives up, 2000 by default.
+        max_combinations: sl1m: after which it gives up, 2000 by default; 0: what the relaxation
+            leaves undecided fails.
+        weights: sl1m: of the slacks, uniform by default; guide: the guide path chooses.
         processes: working at the same time; all cores by default.
         workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
     """
@@ -67,6 +73,7 @@ def label(
         window=window,
         time_limit=time_limit,
         max_combinations=max_combinations,
+        weights=weights,
     )
     if processes is not None:
         require_count(processes)
@@ -78,7 +85,10 @@ def label(
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
-        with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        with (
+            _held(Path(out)),
+            Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        ):
             task = progress.add_task("label", total=sum(map(len, shards)))
             judged, before = label_shards(shards, team, lambda done: progress.advance(task, done))
     finally:
@@ -92,6 +102,21 @@ def label(
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )
+
+
+def _held(out: Path) -> "FolderLock":
+    """Return a hold on the folder of verdicts: two that write it would judge all twice.
+
+    Raises:
+        InputError: somebody else holds it, or it cannot be made.
+    """
+    from jaxleas.files import FolderLock
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {out}: {error.strerror or error}") from error
+    return FolderLock(out, "the label folder", "give another --out")
 
 
 def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":

@@ -92,6 +92,7 @@ class _Search:
                 plan = plan_sl1m(
                     prefix,
                     max_combinations=settings.max_combinations,
+                    weights=settings.weights,
                     time_limit=left,
                     diagnose=False,
                 )

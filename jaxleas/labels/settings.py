@@ -8,6 +8,7 @@ from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
 from jaxleas.contacts.problem import Model
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sl1m import MAX_COMBINATIONS
+from jaxleas.contacts.slack_weights import SlackWeights
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -36,8 +37,10 @@ class MipSettings(PhaseSettings):
 class Sl1mSettings(PhaseSettings):
     """Settings of SL1M."""
 
-    max_combinations: PositiveInt = MAX_COMBINATIONS
-    """of surfaces for the undecided steps, after which it gives up"""
+    max_combinations: NonNegativeInt = MAX_COMBINATIONS
+    """of surfaces for the undecided steps, after which it gives up; 0: without that heuristics"""
+    weights: SlackWeights = "uniform"
+    """of the slacks: uniform, as published, or guide: the guide path chooses among surfaces"""
 
 
 PlannerSettings = SamplingSettings | MipSettings | Sl1mSettings

@@ -147,6 +147,8 @@ class RunConfig(Strict):
 
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Of everything random in training except the terrain."""
+    watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
+    """Who is told the metrics, beside metrics.jsonl; wandb and mlflow are extras."""
     terrain: TerrainConfig = TerrainConfig()
     env: SteeringConfig = SteeringConfig()
     network: NetworkConfig = NetworkConfig()

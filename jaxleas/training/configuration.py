@@ -44,9 +44,9 @@ def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] =
     """
     layers = _layers(Path(path), ())
     wants_help = any(argument in ("--help", "-h") for argument in overrides)
-    if not wants_help:
+    if overrides and not wants_help:
         layers.append((COMMAND_LINE, _parse_overrides(model, overrides)))
-    config = _validate(model, layers)
+    config = validate(model, layers)
     if wants_help:
         print(help_text(model, config))
         raise SystemExit(0)
@@ -100,7 +100,7 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
                 f"{COMMAND_LINE}: '{option}' stands alone; overrides look like --any.field VALUE"
             )
         if name not in fields:
-            raise InputError(f"{COMMAND_LINE}: there is no {option}{_hint(name, list(fields), 2)}")
+            raise InputError(f"{COMMAND_LINE}: there is no {option}{hint(name, list(fields), 2)}")
         if not equals:
             if not rest or rest[0].startswith("--"):
                 raise InputError(f"{COMMAND_LINE}: {option} needs a value: {option} VALUE")
@@ -111,21 +111,26 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
             raise InputError(f"{COMMAND_LINE}: {option} {text} is not YAML: {error}") from error
         for part in reversed(name.split(".")):
             value = {part: value}
-        stated = _merge(stated, value)
+        stated = merge(stated, value)
     return stated
 
 
-def _merge(below: Any, above: Any) -> Any:
+def merge(below: Any, above: Any) -> Any:
     """Return `below` with everything that `above` states put over it, key by key."""
     if not isinstance(below, dict) or not isinstance(above, dict):
         return above
-    return {**below, **{key: _merge(below.get(key), value) for key, value in above.items()}}
+    return {**below, **{key: merge(below.get(key), value) for key, value in above.items()}}
 
 
-def _validate(model: type[Model], layers: Layers) -> Model:
+def validate(model: type[Model], layers: Layers) -> Model:
+    """Return the configuration that layers state together, the weakest first.
+
+    Raises:
+        InputError: one sentence that names the layer, the key, and what would do.
+    """
     stated: dict[str, Any] = {}
     for _, layer in layers:
-        stated = _merge(stated, layer)
+        stated = merge(stated, layer)
     try:
         # Strict, as JSON: a list may become a tuple and a text a path, but "3" is never a number.
         return model.model_validate_json(json.dumps(stated, default=str), strict=True)
@@ -145,7 +150,7 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
     problem = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
     if error["type"] == "extra_forbidden":
         names = [field.name for field in fields_of(model)]
-        return f"{source}: there is no {name}{_hint(name, names)}"
+        return f"{source}: there is no {name}{hint(name, names)}"
     if error["type"] == "missing":
         return f"{source}: {name} is missing and has no default"
     if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once
@@ -163,7 +168,8 @@ def _states(layer: Any, parts: list[str]) -> bool:
     return True
 
 
-def _hint(name: str, names: list[str], dashes: int = 0) -> str:
+def hint(name: str, names: list[str], dashes: int = 0) -> str:
+    """Return the end of a sentence about an unknown field: the nearest of `names`, or all there."""
     close = nearest(name, names)
     if close is not None:
         return f"; perhaps you meant {'-' * dashes}{close}"

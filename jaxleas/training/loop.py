@@ -26,6 +26,7 @@ from jaxleas.training.processes import any_process, from_first
 from jaxleas.training.progress import Progress
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, TrainState, initial_state
+from jaxleas.training.watching import require_watchers
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import InputError, JaxleasError
 
@@ -106,6 +107,7 @@ def train(
     devices: Devices | None = None,
     foresight: Foresight | None = None,
     learned: Learned | None = None,
+    on_examined: Callable[[], None] = lambda: None,
 ) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
@@ -119,6 +121,8 @@ def train(
         devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
         learned: to begin with, in place of fresh networks; a resumed run has its own.
+        on_examined: called when an examination's rows are in the run folder, its checkpoint on its
+            way; what it raises ends the training, and the folder can be gone on with.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -126,7 +130,9 @@ def train(
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
+        InputError: a watcher is not installed or not set up.
     """
+    require_watchers(config.watch)  # before minutes go into compiling
     trainer = Trainer(config, condition, devices or one_device(), foresight)
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
@@ -134,12 +140,18 @@ def train(
     best = _mended_best(trainer, run, checkpoints, best)
     total = config.ppo.updates * config.ppo.batch
     with (
-        MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(total, start=step) as progress,
+        MetricsLog(
+            run.path,
+            truncate_after_step=step if resuming else None,
+            watch=config.watch,
+            config=config.model_dump(mode="json"),
+            say=progress.say,
+        ) as log,
         Interruption() as interruption,
         Background() as background,
     ):
-        desk = _Desk(trainer, run, checkpoints, log, progress, background, best)
+        desk = _Desk(trainer, run, checkpoints, log, progress, background, best, on_examined)
         _Session(trainer, interruption, desk).go_on(state)
     return read_policy(run.path / POLICY_FILE)
 
@@ -290,6 +302,7 @@ class _Desk:
     progress: Progress
     background: Background
     best: float
+    on_examined: Callable[[], None]
 
     def record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
         batch = self.trainer.config.ppo.batch
@@ -323,3 +336,5 @@ class _Desk:
             self.checkpoints.write(packed)
 
         self.background.submit(write)
+        if verdict:
+            self.on_examined()

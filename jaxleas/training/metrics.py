@@ -1,23 +1,25 @@
-"""Metrics of a run: one JSON object a line, and the same numbers for TensorBoard."""
+"""Metrics of a run: one JSON object a line, and the same numbers for all who watch."""
 
 import json
 import logging
 import math
 import os
+import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from jaxleas.files import parse_json, write_text
+from jaxleas.training.watching import Audience, Status, open_watchers
 from jaxleas.types.errors import InputError
 
 _LOG = logging.getLogger("jaxleas")
 
 
 class MetricsLog:
-    """Appends to `metrics.jsonl` and `tensorboard/` in a run folder.
+    """Appends to `metrics.jsonl` in a run folder, and tells the same to all who watch.
 
     Append a step's metrics *before* saving its checkpoint: a run killed between the two then
     repeats the step, and its lines end the same as those of a run never killed. Only the wall time,
@@ -26,35 +28,40 @@ class MetricsLog:
     Args:
         folder: the run folder.
         truncate_after_step: when resuming, the step resumed from: later lines are dropped.
+        watch: watchers, by name; they never stop or slow a training.
+        config: of the run, as plain values, for the watchers.
+        say: told a sentence about a watcher that fails.
 
     Raises:
-        InputError: the file cannot be written.
+        InputError: the file cannot be written, or a watcher is not installed.
     """
 
-    def __init__(self, folder: str | Path, truncate_after_step: int | None = None) -> None:
-        # Slow to import and wanted only in training.
-        from tensorboardX import SummaryWriter
-
+    def __init__(
+        self,
+        folder: str | Path,
+        truncate_after_step: int | None = None,
+        watch: Sequence[str] = ("tensorboard",),
+        config: Mapping[str, Any] | None = None,
+        say: Callable[[str], None] = lambda sentence: print(sentence, file=sys.stderr),
+    ) -> None:
+        watchers = open_watchers(watch, folder)
         self.path = Path(folder) / "metrics.jsonl"
         kept: list[str] = []
-        purge = None
         if truncate_after_step is not None:
             kept = _rows_to_keep(self.path, truncate_after_step)
-            purge = truncate_after_step + 1
         write_text(self.path, "".join(kept))
         spent = json.loads(kept[-1])["seconds"] if kept else 0.0
         self._start = time.monotonic() - spent
         self._stream = self.path.open("a", encoding="utf-8")
-        self._board = SummaryWriter(
-            str(Path(folder) / "tensorboard"), purge_step=purge, flush_secs=10
-        )
+        self._audience = Audience(watchers, say)
+        self._audience.begin(config or {}, name_of(Path(folder)), truncate_after_step)
 
     def append(self, step: int, metrics: Mapping[str, float]) -> None:
         """Write one line; a number that is not finite is written as null.
 
         Args:
             step: training steps done.
-            metrics: by name; a slash groups them in TensorBoard.
+            metrics: by name; a slash groups them.
 
         Raises:
             InputError: the file cannot be written (disk full).
@@ -65,10 +72,9 @@ class MetricsLog:
         try:
             self._stream.write(json.dumps(row, allow_nan=False) + "\n")
             self._stream.flush()  # into the kernel: survives the death of this process
-            for name, value in numbers.items():
-                self._board.add_scalar(name, value, step)
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
+        self._audience.row(int(step), numbers)
 
     def sync(self) -> None:
         """Have all lines on the disk; may be called from another thread.
@@ -81,10 +87,10 @@ class MetricsLog:
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
 
-    def close(self) -> None:
-        """Close the files."""
+    def close(self, status: Status = "finished") -> None:
+        """Close the file; give the watchers a moment to finish."""
         self._stream.close()
-        self._board.close()
+        self._audience.end(status)
 
     def __enter__(self) -> Self:
         return self
@@ -95,7 +101,21 @@ class MetricsLog:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.close()
+        self.close(_status(error))
+
+
+def name_of(folder: Path) -> str:
+    """Return the name of a run for people: its folder, seen from here if it lies below."""
+    whole = folder.resolve()
+    here = Path.cwd()
+    return str(whole.relative_to(here)) if whole.is_relative_to(here) else whole.name
+
+
+def _status(error: BaseException | None) -> Status:
+    if error is None:
+        return "finished"
+    stopped = isinstance(error, KeyboardInterrupt) or getattr(error, "exit_code", None) == 130
+    return "interrupted" if stopped else "failed"
 
 
 def read_metrics(path: str | Path) -> list[dict[str, Any]]:

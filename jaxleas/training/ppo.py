@@ -1,7 +1,7 @@
 """Proximal policy optimisation over Brax's networks and loss, as one jitted train step."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -10,16 +10,31 @@ from jax import Array
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
-from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts, restart_where
 from jaxleas.envs.steering.world import World
 from jaxleas.training.brax_blocks import PPONetworks, Transition, compute_ppo_loss
 from jaxleas.training.config import RunConfig
 from jaxleas.training.networks import update_normaliser
+from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, make_optimiser
 
 Metrics = dict[str, Array]
-TrainStep = Callable[[World, TrainState], tuple[TrainState, Metrics]]
+
+
+class TrainStep(Protocol):
+    """Draws fresh starts, walks and learns, once; pure."""
+
+    def __call__(
+        self, world: World, state: TrainState, params: PpoParams | None = None
+    ) -> tuple[TrainState, Metrics]:
+        """Return the state after one update, and the metrics of that update.
+
+        Args:
+            world: terrains to train on.
+            state: before the update.
+            params: hyperparameters; None: the configuration's, as constants of the program.
+        """
+        ...
 
 
 def make_train_step(
@@ -37,34 +52,70 @@ def make_train_step(
         divide_robots: lays a minibatch [time, robots, ...] out over several devices.
 
     Returns:
-        A function (world, state) -> (state after one update, metrics of that update).
+        The train step, on whose arguments alone what it returns depends.
     """
     walk = _make_walk(config, env, networks)
-    learn = _make_learn(config, env, networks, divide_robots)
+    update = make_update(config, env, networks, divide_robots)
+    constants = PpoParams.of(config)
 
-    def train_step(world: World, state: TrainState) -> tuple[TrainState, Metrics]:
+    def train_step(
+        world: World, state: TrainState, params: PpoParams | None = None
+    ) -> tuple[TrainState, Metrics]:
+        numbers = constants if params is None else params
         key, walk_key, learn_key = jax.random.split(state.key, 3)
-        state, batch, walked = walk(world, state, walk_key)
+        state, batch, walked = walk(world, state, numbers, walk_key)
+        state, learned = update(state, batch, learn_key, numbers)
+        return state.replace(key=key), walked | learned  # type: ignore[attr-defined]
+
+    return train_step
+
+
+def make_update(
+    config: RunConfig,
+    env: SteeringEnv,
+    networks: PPONetworks,
+    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+) -> Callable[..., tuple[TrainState, Metrics]]:
+    """Return the second half of the train step: learn from a batch, whoever walked it.
+
+    The ratios of the loss are against the policy that walked, whose log-probabilities are in the
+    batch: it need not be the present one.
+
+    Args:
+        config: of the run.
+        env: the task.
+        networks: actor and critic.
+        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+
+    Returns:
+        A function (state, batch [time, robots], key, hyperparameters) -> (state after one update,
+        metrics); without hyperparameters the configuration's.
+    """
+    learn = _make_learn(config, env, networks, divide_robots)
+    constants = PpoParams.of(config)
+
+    def update(
+        state: TrainState, batch: Any, key: Array, numbers: PpoParams = constants
+    ) -> tuple[TrainState, Metrics]:
         normaliser = update_normaliser(state.normaliser, batch.observation)
-        params, optimiser, learned = learn(state, normaliser, batch, learn_key)
-        averaged = _average(config.ppo.averaging, state, params)
+        weights, optimiser, learned = learn(state, normaliser, batch, numbers, key)
+        averaged = _average(config.ppo.averaging, state, weights)
         state = state.replace(  # type: ignore[attr-defined]
-            params=params,
+            params=weights,
             averaged=averaged,
             optimiser=optimiser,
             normaliser=normaliser,
-            key=key,
             update=state.update + 1,
         )
         finite = {
             "finite/observation": _all_finite(batch.observation),
             "finite/reward": _all_finite(batch.reward),
             "finite/loss": _all_finite(learned),
-            "finite/parameters": _all_finite((params, optimiser)),
+            "finite/parameters": _all_finite((weights, optimiser)),
         }
-        return state, walked | learned | finite
+        return state, learned | finite
 
-    return train_step
+    return update
 
 
 def _average(decay: float, state: TrainState, params: Any) -> Any:
@@ -82,15 +133,11 @@ def _make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks) -> Ca
     """Return the roll-out: every robot takes `unroll` steps with the present policy."""
     ppo = config.ppo
     distribution = networks.parametric_action_distribution
-    start_weights = RewardParams.of(config.env.reward)
 
-    def walk(world: World, state: TrainState, key: Array):
+    def walk(world: World, state: TrainState, numbers: PpoParams, key: Array):
         pool_key, noise_key, restart_key = jax.random.split(key, 3)
         progress = state.update.astype(jnp.float32) / ppo.updates
-        growth = ppo.final_failure - config.env.reward.failure
-        weights = start_weights.replace(  # type: ignore[attr-defined]
-            failure=start_weights.failure + progress * growth
-        )
+        weights = numbers.reward_weights(progress)
         pool = draw_starts(env, world, pool_key, ppo.candidates)
         restart_keys = jax.random.split(restart_key, ppo.unroll)
         # All exploration noise in one draw: one random key a batch, not one a robot.
@@ -152,25 +199,26 @@ def _make_learn(
 ) -> Callable:
     """Return the optimisation: `epochs` passes over the batch, a minibatch at a time."""
     ppo = config.ppo
-    optimiser = make_optimiser(ppo)
     robots = ppo.environments // ppo.minibatches
 
-    def loss(params, normaliser, minibatch, key):
+    def loss(params, normaliser, minibatch, numbers, key):
         return compute_ppo_loss(
             params,
             normaliser,
             minibatch,
             key,
             networks,
-            entropy_cost=ppo.entropy,
-            discounting=ppo.discount,
-            reward_scaling=ppo.reward_scale,
-            gae_lambda=ppo.gae_lambda,
-            clipping_epsilon=ppo.clip,
-            vf_coefficient=ppo.value_weight,
+            entropy_cost=numbers.entropy,
+            discounting=numbers.discount,
+            reward_scaling=numbers.reward_scale,
+            gae_lambda=numbers.gae_lambda,
+            clipping_epsilon=numbers.clip,
+            vf_coefficient=numbers.value_weight,
         )
 
-    def learn(state: TrainState, normaliser, batch: Any, key: Array):
+    def learn(state: TrainState, normaliser, batch: Any, numbers: PpoParams, key: Array):
+        optimiser = make_optimiser(ppo, numbers)
+
         def minibatch_step(carry, inputs):
             params, moments = carry
             chosen, minibatch_key = inputs
@@ -181,7 +229,7 @@ def _make_learn(
             # Brax's loss wants [robots, time].
             minibatch = jax.tree.map(lambda leaf: jnp.swapaxes(leaf, 0, 1), minibatch)
             gradient, metrics = jax.grad(loss, has_aux=True)(
-                params, normaliser, minibatch, entropy_key
+                params, normaliser, minibatch, numbers, entropy_key
             )
             updates, moments = optimiser.update(gradient, moments, params)
             metrics["gradient_norm"] = optax.global_norm(gradient)

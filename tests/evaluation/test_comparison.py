@@ -5,8 +5,9 @@ from jaxleas.evaluation.comparison import compare
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import load_candidate
 from jaxleas.evaluation.forecast import Forecast
+from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import read_evaluation
-from jaxleas.evaluation.side_by_side import markdown, published, rows
+from jaxleas.evaluation.side_by_side import markdown, rows
 from jaxleas.labels import Judge, MipSettings
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError

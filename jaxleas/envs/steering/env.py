@@ -22,6 +22,7 @@ from jaxleas.envs.steering.motion import integrate, scale_action
 from jaxleas.envs.steering.observation import direction_to_goal, local_heights, observe
 from jaxleas.envs.steering.reward import RewardParams, reward
 from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState
+from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import RootMotion
@@ -87,7 +88,11 @@ class SteeringEnv:
     ) -> Float[Array, "*batch size"]:
         """Return the observation of a robot that seeks `goal` on this local terrain."""
         seen = heights_in_root[..., : len(self.layout.points_in_root)]
-        return observe(seen, motion, goal, self.height_range)
+        observation = observe(seen, motion, goal, self.height_range)
+        if not self.layout.counts_surfaces:
+            return observation
+        count = surface_count(seen, self.layout.rows, self.layout.columns, self.height_range)
+        return jnp.concatenate([observation, count[..., None]], axis=-1)
 
     def start(self, motion: RootMotion, plan: Plan, memory: Any = ()) -> SteeringState:
         """Return the state at the beginning of an episode.

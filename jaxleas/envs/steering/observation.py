@@ -10,6 +10,8 @@ from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import RootMotion
 
+MOST_SURFACES = 8.0  # around a robot, about: on rubble
+
 
 def local_heights(
     atlas: Atlas,
@@ -59,7 +61,10 @@ def observe(
 
 
 def affine_scaling(
-    size: int, height_range: tuple[float, float], max_speed: float
+    size: int,
+    height_range: tuple[float, float],
+    max_speed: float,
+    counts_surfaces: bool = False,
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
     """Return mean and deviation that map an observation's ranges onto [-1, 1].
 
@@ -70,4 +75,6 @@ def affine_scaling(
     mean, deviation = np.zeros(size, np.float32), np.full(size, max_speed, np.float32)
     deviation[3] = np.pi
     mean[MOTION_SIZE:], deviation[MOTION_SIZE:] = (low + high) / 2, (high - low) / 2
+    if counts_surfaces:
+        mean[-1] = deviation[-1] = 0.5 * MOST_SURFACES
     return mean, deviation

@@ -1,0 +1,1 @@
+"""Sweeps over configurations, and populations of policies trained in one compiled program."""
