@@ -33,9 +33,7 @@ def read_done(path: Path, *keys: str) -> dict[str, Any]:
     content = read_json(path)
     for key in keys:
         if not isinstance(content, dict) or type(content.get(key)) not in (int, float):
-            raise InputError(
-                f"{path} does not say {key}, a number; without it, it is done again"
-            )
+            raise InputError(f"{path} does not say {key}, a number; without it, it is done again")
     return content
 
 
