@@ -15,7 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks.strangers.corpus import Kind, make_corpus
+from benchmarks.strangers.corpus import make_corpus
+from benchmarks.strangers.kinds import Kind
 from jaxleas.types import JaxleasError
 
 MOST_SECONDS = 20.0

@@ -29,6 +29,7 @@ def distill(
     from jaxleas.distillation.folder import DistillationFolder
     from jaxleas.distillation.opening import open_folder, train_start
     from jaxleas.distillation.table import table_of
+    from jaxleas.files import FolderLock
     from jaxleas.labels.own_planner import require_said
     from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.training.configuration import load_config
@@ -40,9 +41,10 @@ def distill(
     asked = load_config(DistillationConfig, config)
     require_said(config, asked.planner, planner)
     settled = open_folder(folder, asked, start)
-    run = train_start(folder, settled)
-    distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
-    results = distillation.run(_Teller())
+    with FolderLock(folder.path, "the distillation", "give another --out"):
+        run = train_start(folder, settled)
+        distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
+        results = distillation.run(_Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
     print(f"{folder.policy}: the best round's policy{beside}")

@@ -1,5 +1,6 @@
 """Reading: every failure is an InputError that names the file, the key and what would do."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,8 @@ def read_bytes(path: str | Path, max_bytes: int) -> bytes:
     _require_file(path)
     try:
         with Path(path).open("rb") as stream:
-            content = stream.read(max_bytes + 1)
+            size = os.fstat(stream.fileno()).st_size
+            content = stream.read(min(size, max_bytes) + 1)  # `read` takes so much at once
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
     if len(content) > max_bytes:

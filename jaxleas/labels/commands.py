@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from jaxleas.types.errors import InputError
+
 if TYPE_CHECKING:
+    from jaxleas.files import FolderLock
     from jaxleas.labels.workers import Workers
 
 
@@ -85,7 +88,10 @@ def label(
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
-        with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        with (
+            _held(Path(out)),
+            Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        ):
             task = progress.add_task("label", total=sum(map(len, shards)))
             judged, before = label_shards(shards, team, lambda done: progress.advance(task, done))
     finally:
@@ -99,6 +105,21 @@ def label(
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )
+
+
+def _held(out: Path) -> "FolderLock":
+    """Return a hold on the folder of verdicts: two that write it would judge all twice.
+
+    Raises:
+        InputError: somebody else holds it, or it cannot be made.
+    """
+    from jaxleas.files import FolderLock
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {out}: {error.strerror or error}") from error
+    return FolderLock(out, "the label folder", "give another --out")
 
 
 def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":

@@ -70,7 +70,7 @@ class _Loop:
         self.members, self.home = members, home
         self.config = members.configs[0]
         self.population = Population(members.configs)
-        self.checkpoints = Checkpoints(home / "checkpoints")
+        self.checkpoints = Checkpoints(home / "checkpoints", self.config.checkpoints.keep_last)
         resuming = bool(self.checkpoints.steps())
         step, self.states, note = self._first_states(resuming)
         self.values: list[Values] = note["values"]

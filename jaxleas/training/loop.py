@@ -121,8 +121,8 @@ def train(
         devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
         learned: to begin with, in place of fresh networks; a resumed run has its own.
-        on_examined: called when an examination's results are in the run folder; what it raises ends
-            the training, and the folder can be gone on with.
+        on_examined: called when an examination's rows are in the run folder, its checkpoint on its
+            way; what it raises ends the training, and the folder can be gone on with.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
