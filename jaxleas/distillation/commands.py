@@ -1,4 +1,4 @@
-"""The function behind `jaxleas distill`."""
+"""The functions behind `jaxleas distill` and `jaxleas report`."""
 
 from pathlib import Path
 
@@ -46,6 +46,32 @@ def distill(
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
     print(f"{folder.policy}: the best round's policy{beside}")
+
+
+def report(run: Path, out: Path | None = None) -> Path:
+    """Write a run's report as one self-contained HTML file.
+
+    Of a training: suites that the run was not judged on yet are judged first. Of a distillation:
+    what its files hold; the report says what is missing, and which command makes it.
+
+    Args:
+        run: a run folder, or a distillation's folder.
+        out: where to write it; by default RUN/report.html.
+
+    Raises:
+        InputError: it is no such folder, or holds no policy, or no round, yet.
+    """
+    from jaxleas.distillation.report_data import is_distilled
+
+    if not is_distilled(Path(run)):
+        from jaxleas.evaluation.commands import report as report_training
+
+        return report_training(run, out)
+    from jaxleas.distillation.report import write_distilled_report
+
+    path = write_distilled_report(Path(run), out)
+    print(f"written: {path}")
+    return path
 
 
 class _Teller:

@@ -84,7 +84,7 @@ def evaluate(
     further = parse_policies(_words(policies) or ())
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
-    refusal = load_refusal(surrogate, threshold)
+    refusal = load_refusal(surrogate, threshold, names)
     candidate = load_candidate(run, refusal)
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:

@@ -161,8 +161,8 @@ def _with_course(
         method=method,
         reached=bool(walked.reached[row]),
         planned=bool(judged.planned[row]),
-        x=_plain(path[::keep_every][:-1, 0]),
-        step=_plain(step_lengths(path, keep_every)),
+        x=tuple(path[::keep_every][:-1, 0].astype(np.float64).round(4).tolist()),
+        step=tuple(step_lengths(path, keep_every).round(4).tolist()),
     )
     ground = _ground(grounds, cell)
     x_min, x_max, _, _ = ground.extent

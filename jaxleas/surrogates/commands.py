@@ -56,6 +56,11 @@ def fit(
         raise InputError(
             f"{labels[0]} holds verdicts of the {found.planner} planner, not of {planner}"
         )
+    if found.robot != config.robot:
+        raise InputError(
+            f"{labels[0]} holds verdicts on {found.robot}, but the policy is for {config.robot}:"
+            " label guide paths of that robot"
+        )
     identity = Identity(
         planner=found.planner,
         parameters=found.parameters,

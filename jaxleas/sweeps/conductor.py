@@ -227,15 +227,14 @@ class Conductor:
             return
         for each in self._open.values():
             run = each.run(next(iter(each.configs)))
-            if each.pruned or outcome_file(run).is_file():
-                continue
+            ended = outcome_file(run).is_file()
             curve = learning_curve(run)
             for examination in range(each.reported, len(curve)):
                 each.reported = examination + 1
-                if self.study.report(each.trial, examination + 1, curve[examination][1]):
+                prune = self.study.report(each.trial, examination + 1, curve[examination][1])
+                if prune and not ended and not each.pruned:
                     each.pruned = True
                     write_text(stop_file(run), "")
-                    break
 
     def _tell_finished(self) -> None:
         """Tell the trials whose trainings all have their outcome."""

@@ -70,10 +70,8 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
     """
     path = Path(path).absolute()
     known = path / "sweep.json"
-    if path.exists() and not path.is_dir():
-        raise InputError(f"{path} is a file; --out names a folder")
-    if not known.is_file() and path.is_dir() and {e.name for e in path.iterdir()} - _BEGINNINGS:
-        raise InputError(f"{path} exists and is no sweep: give another --out")
+    if not known.is_file():
+        require_vacant(path, _BEGINNINGS, "sweep")
     lock = hold(path)
     try:
         if not known.is_file():
@@ -104,6 +102,19 @@ def _require_same(path: Path, sweep: Sweep) -> None:
             f"{path} was begun with another run configuration, {path / 'base.yaml'}: restore"
             f" {sweep.config.config}, or give another --out"
         )
+
+
+def require_vacant(path: Path, beginnings: set[str], kind: str) -> None:
+    """Refuse a folder that holds more than the beginnings of what is to be made there.
+
+    Raises:
+        InputError: it does, or it is a file.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path} is a file; --out names a folder")
+    names = {entry.name for entry in path.iterdir()} if path.is_dir() else set()
+    if {name for name in names if not name.startswith(".")} - beginnings:
+        raise InputError(f"{path} exists and is no {kind}: give another --out")
 
 
 def hold(path: Path) -> int:

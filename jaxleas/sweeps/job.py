@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.cli_guard import run_guarded
 from jaxleas.files import read_json, write_json
 from jaxleas.types.errors import InputError, JaxleasError
 
@@ -182,12 +181,17 @@ def patiently(function: Callable[[Any], None], path: str | Path, seconds: float 
             time.sleep(0.5)
 
 
-def main(arguments: Sequence[str]) -> None:
-    """Do the job that the first argument names."""
+def main(arguments: Sequence[str]) -> int:
+    """Do the job that the first argument names; return the exit code."""
     if LIFELINE in arguments:
         _die_with_parent()
-    work(arguments[0])
+    try:
+        work(arguments[0])
+    except JaxleasError as error:  # into the job's log
+        print(f"{type(error).__name__}: {error}")
+        return getattr(error, "exit_code", 2)
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(run_guarded(lambda: main(sys.argv[1:])))
+    sys.exit(main(sys.argv[1:]))

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.files import read_json, write_json
-from jaxleas.sweeps.folder import hold
+from jaxleas.sweeps.folder import hold, require_vacant
 from jaxleas.sweeps.population_config import Members
 from jaxleas.types.errors import InputError
 
@@ -29,11 +29,9 @@ def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
     Raises:
         InputError: it is something else's, another population's, or held by another process.
     """
-    if path.exists() and not path.is_dir():
-        raise InputError(f"{path} is a file; --out names a folder")
     record = path / RECORD
-    if not record.is_file() and path.is_dir() and {each.name for each in path.iterdir()} - {"lock"}:
-        raise InputError(f"{path} exists and is no population: give another --out")
+    if not record.is_file():
+        require_vacant(path, {"lock"}, "population")
     lock = hold(path)
     try:
         mine = {"version": VERSION, **_plain(members)}

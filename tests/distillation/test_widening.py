@@ -61,7 +61,7 @@ def test_actor_and_critic_fit_the_wider_environment(learned):
     )
     shapes = jax.tree.map(jnp.shape, wider.params)
     assert shapes == jax.tree.map(jnp.shape, fresh)
-    assert wider.normaliser.mean.shape == (env.layout.size,)
+    assert np.shape(wider.normaliser.mean) == (env.layout.size,)
 
 
 def test_a_layout_that_does_not_only_add_is_refused(learned):

@@ -136,6 +136,8 @@ def test_the_command_writes_and_prints_the_table(run, tmp_path, capsys, asked):
         evaluate(run, suite="hole", planners=["mip"], processes=0)
     with pytest.raises(InputError, match="time"):
         evaluate(run, suite="hole", planners=["mip"], starts=2, time_limit=-1.0)
+    with pytest.raises(InputError, match="--max-combinations -1"):
+        evaluate(run, suite="hole", planners=["sl1m"], starts=2, max_combinations=-1)
 
 
 def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):
