@@ -5,7 +5,7 @@ they name: `stock` makes it. What a block leaves is there for the blocks after i
 write a block:
 
     ```sh                                   it is run: small, see SMALL; training is replayed
-    ```sh title="not run here: an hour"     it is not; its reader sees why
+    ```sh title="not run by the tests: an hour"     it is not; its reader sees why
     <!-- file: NAME -->                     before a block: it is saved under this name
 
 A python block needs `<!-- runs -->` before it, or such a title. A new command whose files are not
@@ -48,7 +48,7 @@ BLOCK = re.compile(
     r"(?P<body>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
-NOT_RUN = "not run here: "
+NOT_RUN = "not run by the tests: "
 # Options that make a command small, by command; what it was given is first checked as it stands.
 SMALL = {
     "evaluate": {"starts": 2, "processes": 1},
