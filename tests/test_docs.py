@@ -16,7 +16,6 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
-from jaxleas.robots.catalogue import ROBOTS
 from jaxleas.terrain import write_height_map
 from jaxleas.training.config import RunConfig
 from jaxleas.training.configuration import load_config, to_yaml
@@ -91,8 +90,12 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
             assert parse_jaxleas(arguments, monkeypatch), line
         case ["python", "train.py", *arguments]:
             parse_train(arguments, monkeypatch)
+        case ["python", "-m", "venv", *_]:
+            pass
         case ["python", "-m", module, *arguments]:
-            source = (ROOT / module.replace(".", "/") / "__main__.py").read_text(encoding="utf-8")
+            file = ROOT / module.replace(".", "/")
+            file = file / "__main__.py" if file.is_dir() else file.with_suffix(".py")
+            source = file.read_text(encoding="utf-8")
             for option in (each for each in arguments if each.startswith("--")):
                 assert f'"{option}"' in source, f"{module} has no {option}"
         case ["python", script, *arguments]:
@@ -207,11 +210,10 @@ def test_the_readme_example_walks(workplace: Path, capsys) -> None:
     )
 
 
-def test_the_examples_for_your_own_run(workplace: Path, monkeypatch) -> None:
-    monkeypatch.setattr("jaxleas.robots.catalogue.ROBOTS", {**ROBOTS})
+def test_the_examples_for_your_own_run(workplace: Path) -> None:
     names = execute("docs/your_own.md")
     assert (workplace / "stairs.npz").is_file()
-    assert (workplace / "walker.json").is_file()
+    assert (workplace / "robots/walker.json").is_file()
     require_level_means_level(names["env"])
 
 
@@ -226,8 +228,7 @@ def require_level_means_level(env) -> None:
 
 
 @pytest.mark.slow
-def test_the_training_example_trains(workplace: Path, brax_ranks, monkeypatch) -> None:
-    monkeypatch.setattr("jaxleas.robots.catalogue.ROBOTS", {**ROBOTS})
+def test_the_training_example_trains(workplace: Path, brax_ranks) -> None:
     execute("docs/your_own.md", slow=True)
     assert (workplace / "level_policy.npz").is_file()
 

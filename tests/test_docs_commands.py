@@ -5,7 +5,7 @@ they name: `stock` makes it. What a block leaves is there for the blocks after i
 write a block:
 
     ```sh                                   it is run: small, see SMALL; training is replayed
-    ```sh title="not run here: an hour"     it is not; its reader sees why
+    ```sh title="not run by the tests: an hour"     it is not; its reader sees why
     <!-- file: NAME -->                     before a block: it is saved under this name
 
 A python block needs `<!-- runs -->` before it, or such a title. A new command whose files are not
@@ -48,7 +48,7 @@ BLOCK = re.compile(
     r"(?P<body>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
-NOT_RUN = "not run here: "
+NOT_RUN = "not run by the tests: "
 # Options that make a command small, by command; what it was given is first checked as it stands.
 SMALL = {
     "evaluate": {"starts": 2, "processes": 1},
@@ -97,11 +97,14 @@ def test_every_block_is_run_or_says_why_not(page: Path, block: Block) -> None:
         assert block.language in SAVED
 
 
-def test_no_command_hides_in_an_indented_block() -> None:
-    """Only fenced blocks can say that they are not run."""
+def test_no_command_hides_in_another_block() -> None:
+    """Only blocks of sh can say that they are not run."""
+    command = re.compile(r"^(?: {4})?(?:python|jaxleas|make) .*$", re.MULTILINE)
     for page in PAGES:
-        prose = BLOCK.sub("", page.read_text(encoding="utf-8"))
-        assert not re.findall(r"^    (?:python|jaxleas|make) .*$", prose, re.MULTILINE), page
+        indented = BLOCK.sub("", page.read_text(encoding="utf-8"))
+        assert not re.findall(r"^ {4}(?:python|jaxleas|make) .*$", indented, re.MULTILINE), page
+        for block in blocks(page):
+            assert block.language == "sh" or not command.search(block.body), page
 
 
 @pytest.fixture(scope="module", autouse=True)
