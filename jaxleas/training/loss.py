@@ -5,6 +5,7 @@ arranged otherwise: observations come normalised, once for both networks; the ta
 same under the old and the new policy, is left out of their ratio.
 """
 
+import math
 from typing import Any
 
 import jax
@@ -16,7 +17,7 @@ from jaxtyping import Float
 from jaxleas.envs.steering.layout import ACTION_SIZE
 from jaxleas.training.networks import dense
 
-LOG_ROOT_TWO_PI = 0.5 * jnp.log(2.0 * jnp.pi)
+LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 MIN_DEVIATION = 1e-3  # of the action distribution, as Brax has it
 
 
@@ -76,7 +77,7 @@ def log_density(
 
 def tanh_log_slope(raw: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     """Return log(d tanh(x) / dx)."""
-    return 2.0 * (jnp.log(2.0) - raw - jax.nn.softplus(-2.0 * raw))
+    return 2.0 * (math.log(2.0) - raw - jax.nn.softplus(-2.0 * raw))
 
 
 def advantages(
