@@ -1,6 +1,7 @@
 """Policies, surrogates, checkpoints."""
 
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -74,7 +75,8 @@ def learned_kinds(folder: Path) -> list[Kind]:
     (step,) = (folder / "checkpoints").glob("step_*.npz")
 
     def walk(path: Path) -> None:
-        load_policy(path)(np.zeros((2, size), np.float32))
+        policy: Any = load_policy(path)
+        policy(np.zeros((2, size), np.float32))
 
     def restore(path: Path) -> None:
         found = Checkpoints(path.parent)

@@ -122,9 +122,8 @@ def import_png(
     if zero_is_void:
         heights[values == 0] = np.nan
     if min(heights.shape) < 2:
-        raise InputError(
-            f"{path} has {heights.shape[1]} x {heights.shape[0]} pixels; at least 2 x 2"
-        )
+        rows, columns = values.shape
+        raise InputError(f"{path} has {columns} x {rows} pixels; at least 2 x 2")
     require_usable(heights, resolution, path)
     return HeightMap(heights, float(resolution), (0.5 * resolution, 0.5 * resolution))
 
