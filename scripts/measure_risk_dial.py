@@ -1,6 +1,6 @@
 """Measure the risk dial: exact success against share attempted and speed, for every threshold.
 
-python -m scripts.measure_risk_dial --policy runs/leas_p1 --surrogate surrogate.npz \
+python scripts/measure_risk_dial.py --policy runs/leas_p1 --surrogate surrogate.npz \
     --labels labels --out benchmarks/results/risk_dial.json --picture docs/images/risk_dial.png
 
 Three kinds of guide paths: LEAS's own on the held-out suites transitions, hole and wall; RB-Kino's

@@ -53,6 +53,7 @@ def rotate_to_root(
 
 def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     """Bring an angle [rad] into [-pi, pi)."""
-    wrapped = (angle + jnp.pi) % (2 * jnp.pi) - jnp.pi
-    # In float32 the remainder of a tiny negative number rounds up to 2 pi itself.
-    return jnp.where(wrapped >= jnp.pi, -jnp.pi, wrapped)
+    # Not the remainder: XLA:CPU calls a function of the C library for each one.
+    wrapped = angle - 2 * jnp.pi * jnp.floor((angle + jnp.pi) / (2 * jnp.pi))
+    # Rounding may leave it just outside, on either side.
+    return jnp.where(wrapped >= jnp.pi, -jnp.pi, jnp.maximum(wrapped, -jnp.pi))

@@ -10,13 +10,11 @@ report.html                 pictures
 lock                        held while a process conducts the sweep
 """
 
-import fcntl
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from uuid import uuid4
 
-from jaxleas.files import read_json, write_json, write_text
+from jaxleas.files import FolderLock, read_json, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
 from jaxleas.training.config import RunConfig
@@ -38,7 +36,7 @@ class SweepFolder:
 
     path: Path
     owner: str
-    _lock: int
+    _lock: FolderLock
 
     @property
     def journal(self) -> Path:
@@ -59,7 +57,7 @@ class SweepFolder:
 
     def close(self) -> None:
         """Let another process conduct the sweep."""
-        os.close(self._lock)
+        self._lock.close()
 
 
 def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
@@ -84,7 +82,7 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
         _require_same(path, sweep)
         return SweepFolder(path, record["owner"], lock)
     except BaseException:
-        os.close(lock)
+        lock.close()
         raise
 
 
@@ -117,22 +115,14 @@ def require_vacant(path: Path, beginnings: set[str], kind: str) -> None:
         raise InputError(f"{path} exists and is no {kind}: give another --out")
 
 
-def hold(path: Path) -> int:
-    """Make a folder and return a descriptor that holds it until it is closed.
+def hold(path: Path) -> FolderLock:
+    """Make a folder and hold it until the lock is closed.
 
     Raises:
         InputError: it cannot be made, or another process holds it.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(path / "lock", os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
         raise InputError(f"cannot make the folder {path}: {error.strerror}") from error
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(descriptor)
-        raise InputError(
-            f"another process works in {path}; wait for it, or give another --out"
-        ) from error
-    return descriptor
+    return FolderLock(path, "the folder", "give another --out")

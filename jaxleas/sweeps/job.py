@@ -169,14 +169,14 @@ def work(path: str | Path) -> None:
     patiently(do_job, path)
 
 
-def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 60.0) -> None:
+def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 90.0) -> None:
     """Do a job, waiting where its run folder is still held by a worker that is about to die."""
     until = time.monotonic() + seconds
     while True:
         try:
             return function(path)
         except InputError as error:
-            if "is in use by process" not in str(error) or time.monotonic() > until:
+            if "is in use by" not in str(error) or time.monotonic() > until:
                 raise
             time.sleep(0.5)
 

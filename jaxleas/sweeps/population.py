@@ -64,7 +64,7 @@ class Population:
         self.world = jax.device_put(training_world(config), whole)
         self.held_out = jax.device_put(held_out_world(config), whole)
         networks = make_networks(config.network, self.env)
-        step = make_train_step(config, self.env, networks)
+        step = make_train_step(config, self.env)
         examine = make_examination(config, self.env, networks)
 
         def advance(world: World, states: TrainState, params: PpoParams):

@@ -105,9 +105,9 @@ def test_whole_episodes_are_walked_and_remember_who_walked_them(training, ground
     logits = training.networks.policy_network.apply(
         state.normaliser, state.params.policy, episodes.observation
     )
-    np.testing.assert_allclose(episodes.logits, logits, atol=1e-5)
-    again = distribution.log_prob(logits, episodes.raw_action)
-    np.testing.assert_allclose(episodes.log_prob, again, atol=1e-4)
+    normal = distribution.create_dist(logits)
+    np.testing.assert_allclose(episodes.location, normal.loc, atol=1e-5)
+    np.testing.assert_allclose(episodes.deviation, normal.scale, atol=1e-5)
     assert episodes.failure_cost == pytest.approx(CONFIG.env.reward.alive)
 
 

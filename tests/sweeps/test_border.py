@@ -65,7 +65,10 @@ LINEAR = {"low": 0.1, "high": 0.2}
         ({"set": {"ppo.steps": -3}}, "ppo.steps is -3"),
         ({"objectives": [{"measure": "speed"}]}, "'held_out'"),
         ({"objectives": []}, "objectives is empty"),
-        ({"objectives": [{"measure": "held_out"}] * 2}, "objectives measures held_out twice"),
+        (
+            {"objectives": [{"measure": "held_out"}, {"measure": "held_out"}]},
+            "objectives measures held_out twice",
+        ),
         ({"objectives": [{"measure": "steps_to_success", "success": 1.5}]}, "success is 1.5"),
         ({"objectives": [{"measure": "exact", "suites": ["stairs"]}]}, "objectives.0"),
         ({"objectives": [{"measure": "exact", "parameters": {"sample": 3}}]}, "objectives.0"),

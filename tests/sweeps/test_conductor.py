@@ -70,25 +70,30 @@ def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
         assert each.values["held_out"] == pytest.approx(
             min(1.0, 100 * each.params["ppo.learning_rate"])
         )
-    diaries = [run / "diary" for run in out.glob("trials/*/seed_0")]
-    assert len(diaries) == 20
-    assert all(diary.read_text().split().count("ended") == 1 for diary in diaries)
+    runs = list(out.glob("trials/*/seed_0"))
+    assert len(runs) == 20
+    for run in runs:
+        steps = [json.loads(row)["step"] for row in (run / "metrics.jsonl").open()]
+        assert steps == [640, 1280, 1920, 2560]
     rows = list(csv.DictReader((out / "results.csv").open()))
     assert [int(row["trial"]) for row in rows] == list(range(20))
 
 
 def test_a_killed_worker_is_replaced_and_its_training_goes_on(tmp_path):
-    """The pretender kills itself once in the middle of every training."""
+    """The pretender kills itself once in every training, after its second examination."""
     script = tmp_path / "mortal.py"
     script.write_text(
-        "import json, os, pathlib, sys, threading, time\n"
+        "import json, os, pathlib, sys\n"
         "sys.path.insert(0, sys.argv[1])\n"
         "from tests.sweeps import pretender\n"
-        "job = json.loads(pathlib.Path(sys.argv[2]).read_text())\n"
-        "for each in job['trainings']:\n"
+        "def sleep(seconds):\n"
+        "    begun = (run / 'diary').read_text().split().count('begun')\n"
+        "    rows = run / 'metrics.jsonl'\n"
+        "    if begun == 1 and rows.is_file() and len(rows.read_text().splitlines()) == 2:\n"
+        "        os.kill(os.getpid(), 9)\n"
+        "pretender.time.sleep = sleep\n"
+        "for each in json.loads(pathlib.Path(sys.argv[2]).read_text())['trainings']:\n"
         "    run = pathlib.Path(each['run'])\n"
-        "    if not run.is_dir():\n"
-        "        threading.Timer(0.12, lambda: os.kill(os.getpid(), 9)).start()\n"
         "    pretender.pretend(run, json.loads(each['config']))\n"
     )
     path = write_sweep(tmp_path, space=SPACE, trials=2)
@@ -167,7 +172,7 @@ def test_a_folder_is_one_sweeps_and_one_conductors(tmp_path):
     other = open_sweep(write_sweep(tmp_path, "other.yaml", seeds=[5]))
     more = open_sweep(write_sweep(tmp_path, "sweep.yaml", trials=9))
     held = open_folder(tmp_path / "out", sweep)
-    with pytest.raises(InputError, match="another process works in"):
+    with pytest.raises(InputError, match="is in use by"):
         open_folder(tmp_path / "out", sweep)
     held.close()
     with pytest.raises(InputError, match="is a sweep with another file"):

@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig, draw_values, evolve, perturbed
-from jaxleas.sweeps.population_loop import History, lineage, read_history
+from jaxleas.sweeps.history import History, lineage, read_history
 
 SPACE = {
     "ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True),

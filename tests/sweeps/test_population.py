@@ -8,10 +8,11 @@ import pytest
 
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
+from jaxleas.sweeps.history import read_history
 from jaxleas.sweeps.population import require_one_program
 from jaxleas.sweeps.population_config import Members, open_population
 from jaxleas.sweeps.population_folder import hold_population
-from jaxleas.sweeps.population_loop import read_history, train_population
+from jaxleas.sweeps.population_loop import train_population
 from jaxleas.training.configuration_values import with_values
 from jaxleas.training.loop import InterruptedRunError, train
 from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
@@ -77,7 +78,7 @@ def test_a_populations_folder_is_one_populations(tmp_path):
     out = tmp_path / "out"
     with (
         hold_population(out, members) as runs,
-        pytest.raises(InputError, match="another process works in"),
+        pytest.raises(InputError, match="is in use by"),
         hold_population(out, members),
     ):
         pass
