@@ -153,7 +153,6 @@ def stock(tmp_path_factory) -> Path:
     for name in ("leas_p1", "another", "leas_p2_sampling", "p2_mip"):
         run = make_run(Path("runs") / name, seed=len(name))
         write_policy(run / "policy.npz", homing_policy())
-    cli.run(["export", "runs/leas_p1"])
     shutil.copytree(ROOT / "configs", "configs")
     return folder
 
