@@ -21,7 +21,9 @@ def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"])
     return jnp.concatenate([turned, vector[..., 2:]], axis=-1)
 
 
-def rotate_to_world(vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+def rotate_to_world(
+    vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]
+) -> Float[Array, "*batch N D"]:
     """Turn N vectors per robot from the root's heading into the world's axes.
 
     Args:
@@ -34,7 +36,9 @@ def rotate_to_world(vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array
     return rotate_by_yaw(vector_in_root, yaw[..., None])
 
 
-def rotate_to_root(vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+def rotate_to_root(
+    vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]
+) -> Float[Array, "*batch N D"]:
     """Turn N vectors per robot from the world's axes into the root's heading.
 
     Args:

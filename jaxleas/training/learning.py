@@ -14,7 +14,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
 from jaxleas.training.config import RunConfig
 from jaxleas.training.loss import Experience, ppo_loss
-from jaxleas.training.networks import normalise
+from jaxleas.training.networks import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, make_optimiser
 
@@ -30,22 +30,27 @@ def make_learn(
         divide_robots: lays a minibatch [time, robots, ...] out over several devices.
 
     Returns:
-        A function of the state after walking, the normaliser, what was walked, the hyperparameters
-        and a key.
+        A function of the state after walking, the normaliser, what was walked, what was seen after
+        the last step, the hyperparameters and a key.
     """
     ppo = config.ppo
     robots = ppo.environments // ppo.minibatches
     steps = ppo.epochs * ppo.minibatches
 
-    def learn(state: TrainState, normaliser, batch: Experience, numbers: PpoParams, key: Array):
+    def learn(
+        state: TrainState,
+        normaliser: Normaliser,
+        batch: Experience,
+        last_observation: Array,
+        numbers: PpoParams,
+        key: Array,
+    ):
         optimiser = make_optimiser(ppo, numbers)
 
         def minibatch_step(carry, inputs):
             params, moments = carry
             chosen, flip, noise = inputs
-            minibatch, last = divide_robots(
-                take_robots(env, batch, state.observation, chosen, flip)
-            )
+            minibatch, last = divide_robots(take_robots(env, batch, last_observation, chosen, flip))
             minibatch = replace(minibatch, observation=normalise(minibatch.observation, normaliser))
             gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
                 params,

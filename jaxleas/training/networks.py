@@ -45,8 +45,17 @@ def initial_normaliser(config: NetworkConfig, env: SteeringEnv) -> Normaliser:
     """Return the normaliser before any data."""
     if config.normaliser == "running":
         return running_statistics.init_state(specs.Array((env.layout.size,), jnp.dtype("float32")))
-    mean, deviation = affine_scaling(env.layout.size, env.height_range, env.config.limits.max_speed)
-    return running_statistics.NestedMeanStd(mean=jnp.asarray(mean), std=jnp.asarray(deviation))
+    mean, deviation = scaling_of(env)
+    return running_statistics.NestedMeanStd(mean=mean, std=deviation)
+
+
+def scaling_of(env: SteeringEnv) -> tuple[Float[Array, " size"], Float[Array, " size"]]:
+    """Return mean and deviation of the affine normaliser of a task's observations."""
+    layout, max_speed = env.layout, env.config.limits.max_speed
+    mean, deviation = affine_scaling(
+        layout.size, env.height_range, max_speed, layout.counts_surfaces
+    )
+    return jnp.asarray(mean), jnp.asarray(deviation)
 
 
 def update_normaliser(

@@ -9,9 +9,9 @@ from jax import Array
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
-from jaxleas.training.brax_blocks import PPONetworks
 from jaxleas.training.config import RunConfig
 from jaxleas.training.learning import make_learn
+from jaxleas.training.loss import Experience
 from jaxleas.training.networks import update_normaliser
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
@@ -39,7 +39,6 @@ class TrainStep(Protocol):
 def make_train_step(
     config: RunConfig,
     env: SteeringEnv,
-    networks: PPONetworks,
     divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
 ) -> TrainStep:
     """Return the train step: draw fresh starts, walk, learn. It is pure; jit it as you like.
@@ -47,14 +46,13 @@ def make_train_step(
     Args:
         config: of the run.
         env: the task.
-        networks: actor and critic.
         divide_robots: lays a minibatch [time, robots, ...] out over several devices.
 
     Returns:
         The train step, on whose arguments alone what it returns depends.
     """
     walk = make_walk(config, env)
-    learn = make_learn(config, env, divide_robots)
+    update = make_update(config, env, divide_robots)
     constants = PpoParams.of(config)
 
     def train_step(
@@ -63,15 +61,52 @@ def make_train_step(
         numbers = constants if params is None else params
         key, walk_key, learn_key = jax.random.split(state.key, 3)
         state, batch, walked = walk(world, state, numbers, walk_key)
+        state, learned = update(state, batch, state.observation, learn_key, numbers)
+        return state.replace(key=key), walked | learned  # type: ignore[attr-defined]
+
+    return train_step
+
+
+def make_update(
+    config: RunConfig,
+    env: SteeringEnv,
+    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+) -> Callable[..., tuple[TrainState, Metrics]]:
+    """Return the second half of the train step: learn from a batch, whoever walked it.
+
+    The ratios of the loss are against the policy that walked, whose distributions are in the
+    batch: it need not be the present one.
+
+    Args:
+        config: of the run.
+        env: the task.
+        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+
+    Returns:
+        A function (state, batch [time, robots], observation after its last step, key,
+        hyperparameters) -> (state after one update, metrics); without hyperparameters the
+        configuration's.
+    """
+    learn = make_learn(config, env, divide_robots)
+    constants = PpoParams.of(config)
+
+    def update(
+        state: TrainState,
+        batch: Experience,
+        last_observation: Array,
+        key: Array,
+        numbers: PpoParams = constants,
+    ) -> tuple[TrainState, Metrics]:
         normaliser = update_normaliser(state.normaliser, batch.observation)
-        weights, optimiser, learned = learn(state, normaliser, batch, numbers, learn_key)
+        weights, optimiser, learned = learn(
+            state, normaliser, batch, last_observation, numbers, key
+        )
         averaged = _average(config.ppo.averaging, state, weights)
         state = state.replace(  # type: ignore[attr-defined]
             params=weights,
             averaged=averaged,
             optimiser=optimiser,
             normaliser=normaliser,
-            key=key,
             update=state.update + 1,
         )
         finite = {
@@ -80,9 +115,9 @@ def make_train_step(
             "finite/loss": _all_finite(learned),
             "finite/parameters": _all_finite((weights, optimiser)),
         }
-        return state, walked | learned | finite
+        return state, learned | finite
 
-    return train_step
+    return update
 
 
 def _average(decay: float, state: TrainState, params: Any) -> Any:

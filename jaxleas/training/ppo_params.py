@@ -5,6 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from flax import struct
+from jax import Array
 
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.training.config import RunConfig
@@ -59,6 +60,15 @@ class PpoParams:
             failure_growth=config.ppo.final_failure - config.env.reward.failure,
             reward=RewardParams.of(config.env.reward),
         )
+
+    def reward_weights(self, progress: Array) -> RewardParams:
+        """Return the reward's weights, of which a failure's grows linearly with the training.
+
+        Args:
+            progress: share of the updates that is done.
+        """
+        failure = self.reward.failure + progress * self.failure_growth
+        return self.reward.replace(failure=failure)  # type: ignore[attr-defined]
 
     @classmethod
     def stack(cls, configs: list[RunConfig]) -> "PpoParams":

@@ -23,9 +23,7 @@ def make_walk(config: RunConfig, env: SteeringEnv) -> Callable:
     def walk(world: World, state: TrainState, numbers: PpoParams, key: Array):
         pool_key, noise_key, restart_key = jax.random.split(key, 3)
         progress = state.update.astype(jnp.float32) / ppo.updates
-        weights = numbers.reward.replace(  # type: ignore[attr-defined]
-            failure=numbers.reward.failure + progress * numbers.failure_growth
-        )
+        weights = numbers.reward_weights(progress)
         pool = draw_starts(env, world, pool_key, ppo.candidates)
         # All that is random in one draw each: one key a batch, not one a step or a robot.
         picks = draw_picks(pool, restart_key, (ppo.unroll, ppo.environments))

@@ -44,7 +44,7 @@ def run(condition=None, env=None, **ppo):
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat), height_map(flat, half_size=4.0))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks), donate_argnums=1)
+    step = jax.jit(make_train_step(config, steering), donate_argnums=1)
     history = []
     for _ in range(config.ppo.updates):
         state, metrics = step(world, state)
@@ -106,7 +106,7 @@ def test_running_statistics_learn_the_observation():
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks))
+    step = jax.jit(make_train_step(config, steering))
     for _ in range(3):
         state, metrics = step(world, state)
     assert all(bool(value) for name, value in metrics.items() if "finite/" in name)
@@ -156,7 +156,7 @@ def test_the_train_step_compiles_once():
     steering = SteeringEnv(config.env)
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat))
-    step = make_train_step(config, steering, networks)
+    step = make_train_step(config, steering)
     traces = 0
 
     def counted(world, state):

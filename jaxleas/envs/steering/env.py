@@ -1,6 +1,5 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
-from functools import partial
 from typing import Any
 
 import jax
@@ -25,6 +24,7 @@ from jaxleas.envs.steering.motion import integrate, scale_action
 from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, write_observation
 from jaxleas.envs.steering.reward import RewardParams, reward
 from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState, Verdict
+from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import RootMotion
@@ -101,9 +101,7 @@ class SteeringEnv:
         """Return the observation of a robot that seeks `goal` on this local terrain."""
         seen = heights_in_root[..., : len(self.layout.points_in_root)]
         columns = jnp.pad(seen, [(0, 0)] * (seen.ndim - 1) + [(MOTION_SIZE, 0)])
-        return write_observation(
-            columns, *seen_motion(motion, goal), height_range=self.height_range
-        )
+        return self._write(columns, *seen_motion(motion, goal))
 
     def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return what robots see: as `observe` of their local terrain, in one pass."""
@@ -113,9 +111,18 @@ class SteeringEnv:
             motion.position,
             motion.yaw,
             self._seen,
-            partial(write_observation, height_range=self.height_range),
+            self._write,
             *seen_motion(motion, self.goal(state)),
         )
+
+    def _write(self, columns: Array, *seen: Array) -> Array:
+        """Return the observation of heights, behind places that are kept for the motion."""
+        observation = write_observation(columns, *seen, height_range=self.height_range)
+        if not self.layout.counts_surfaces:
+            return observation
+        heights, layout = columns[..., MOTION_SIZE:], self.layout
+        count = surface_count(heights, layout.rows, layout.columns, self.height_range)
+        return jnp.concatenate([observation, count[..., None]], axis=-1)
 
     def start(self, motion: RootMotion, plan: Plan, memory: Any = ()) -> SteeringState:
         """Return the state at the beginning of an episode.

@@ -9,6 +9,8 @@ from jaxleas.envs.steering.layout import MOTION_SIZE
 from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
 from jaxleas.types import RootMotion
 
+MOST_SURFACES = 8.0  # around a robot, about: on rubble
+
 
 def direction_to_goal(
     motion: RootMotion, goal: Float[Array, "*batch 2"]
@@ -55,7 +57,10 @@ def write_observation(
 
 
 def affine_scaling(
-    size: int, height_range: tuple[float, float], max_speed: float
+    size: int,
+    height_range: tuple[float, float],
+    max_speed: float,
+    counts_surfaces: bool = False,
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
     """Return mean and deviation that map an observation's ranges onto [-1, 1].
 
@@ -66,4 +71,6 @@ def affine_scaling(
     mean, deviation = np.zeros(size, np.float32), np.full(size, max_speed, np.float32)
     deviation[3] = np.pi
     mean[MOTION_SIZE:], deviation[MOTION_SIZE:] = (low + high) / 2, (high - low) / 2
+    if counts_surfaces:
+        mean[-1] = deviation[-1] = 0.5 * MOST_SURFACES
     return mean, deviation
