@@ -10,7 +10,7 @@ WORKERS ?= 2
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
 
-.PHONY: train test test-all lint bench lock clean
+.PHONY: train test test-all lint bench docs lock clean
 
 train: $(RUN_STAMP)
 	@if [ -e $(RUN_DIR)/config.yaml ]; then \
@@ -37,6 +37,11 @@ lint: $(DEV_STAMP)
 
 bench: $(DEV_STAMP)
 	$(BIN)/python -m benchmarks $(BENCH)
+
+# The documentation site, build/site; broken links fail, and so does whatever a page would fetch.
+docs: $(DEV_STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	$(BIN)/python scripts/check_site.py build/site
 
 # Locked for every platform and Python at once; the lists name no registry.
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 \

@@ -9,7 +9,7 @@ import numpy as np
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.files import read_json, write_json
+from jaxleas.files import read_json, require_version, write_json
 from jaxleas.robots import load_robot
 from jaxleas.types.errors import InputError
 
@@ -44,8 +44,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
     missing = [key for key in NEEDED if key not in content]
     if missing:
         raise InputError(f"{where} is not a contact problem: it lacks {', '.join(missing)}")
-    if content.get("version", VERSION) != VERSION:
-        raise InputError(f"{where} has version {content['version']!r}; this package reads 1")
+    require_version(content, VERSION, where)
     model = content["model"]
     if model not in ("two_com", "feet"):
         raise InputError(f"{where}: model must be 'two_com' or 'feet', not {model!r:.60}")

@@ -77,7 +77,8 @@ class DistillationConfig(Strict):
 
     mode: Literal["surrogate", "faithful"] = "surrogate"
     """Who ends episodes in practice: a surrogate of the planner, or the exact planner itself."""
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling"
+    planner: Annotated[str, Field(pattern=r"^(sampling|mip|sl1m|[\w.]+:\w+)$")] = "sampling"
+    """sampling, mip, sl1m, or MODULE:CLASS of one's own, which the command line must name, too."""
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""
     rounds: Count = 4

@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Int
+from jax import Array
+from jaxtyping import Float, Int
 
 from jaxleas.distillation.episodes import Episodes
 from jaxleas.labels import Verdict
-from jaxleas.training.brax_blocks import Transition
+from jaxleas.training.loss import Experience
 
-_KEPT = ("observation", "raw_action", "log_prob", "logits", "reward")
+_KEPT = ("observation", "raw_action", "location", "deviation", "reward")
 Steps = dict[str, np.ndarray]
 """Steps one after the other, [M, ...]: what is learned from."""
 
@@ -99,8 +99,10 @@ class Stream:
         return {name: array[: size + 1] for name, array in whole.items()}
 
 
-def to_transitions(steps: Steps, environments: int, unroll: int) -> Any:
-    """Return a batch as PPO learns from it, [unroll, environments].
+def to_experience(
+    steps: Steps, environments: int, unroll: int
+) -> tuple[Experience, Float[Array, "environments size"]]:
+    """Return a batch as PPO learns from it, and what was seen after its last step.
 
     Each row is a stretch of the stream. It may run over the end of one episode into the next, as
     the rows of the ordinary training do, since an end is marked as one.
@@ -112,18 +114,5 @@ def to_transitions(steps: Steps, environments: int, unroll: int) -> Any:
         return jnp.asarray(array.reshape(environments, unroll, *array.shape[1:]).swapaxes(0, 1))
 
     after = steps["observation"][unroll::unroll][:environments]
-    return Transition(
-        observation=rows("observation"),
-        action=(),
-        reward=rows("reward"),
-        discount=1.0 - rows("terminated").astype(jnp.float32),
-        next_observation=jnp.asarray(after)[None],
-        extras={
-            "policy_extras": {
-                "raw_action": rows("raw_action"),
-                "log_prob": rows("log_prob"),
-                "distribution_params": rows("logits"),
-            },
-            "state_extras": {"truncation": rows("truncated").astype(jnp.float32)},
-        },
-    )
+    flags = {name: rows(name).astype(jnp.float32) for name in ("terminated", "truncated")}
+    return Experience(**{name: rows(name) for name in _KEPT}, **flags), jnp.asarray(after)

@@ -13,13 +13,13 @@ from typing import Any
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.faithful_practice import practise_faithfully
-from jaxleas.distillation.folder import DistillationFolder, RoundFolder
+from jaxleas.distillation.folder import DistillationFolder, RoundFolder, read_done
 from jaxleas.distillation.judging import exact_success, judge_round, summary
 from jaxleas.distillation.labelling import Ground, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.files import atomic_path, read_json, write_json
+from jaxleas.files import atomic_path, write_json
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
 from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import (
@@ -173,7 +173,7 @@ class Distillation:
             say(f"round {number}: practice")
             config = practice_config(self.config, self.run_config)
             practise(folder, config, surrogate, learned, self.config.practice.threshold)
-        seconds["practice"] = read_json(folder.practised)["seconds"]
+        seconds["practice"] = read_done(folder.practised, "seconds")["seconds"]
         policy, (_, learned) = read_policy(folder.policy), read_run(folder.run)
         result = self._judge(number, policy, say, seconds, surrogate.report, labelled["guides"])
         return result, policy, learned, surrogate
@@ -195,7 +195,7 @@ class Distillation:
                 self.judge,
             )
             practise_faithfully(folder, training, learned)
-        seconds = {"practice": read_json(folder.practised)["seconds"]}
+        seconds = {"practice": read_done(folder.practised, "seconds")["seconds"]}
         policy = read_policy(folder.policy)
         _, learned = read_run(folder.run)
         return self._judge(number, policy, say, seconds, None, 0), policy, learned, None
@@ -221,7 +221,7 @@ class Distillation:
                 self.workers,
                 lambda done, total: say(f"round {number}: {done} of {total} guide paths judged"),
             )
-        return read_json(folder.labelled)
+        return read_done(folder.labelled, "guides", "seconds")
 
     def _fit(self, number: int, folder: RoundFolder, say: Say) -> Surrogate:
         if folder.surrogate.is_file():

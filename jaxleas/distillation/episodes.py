@@ -14,8 +14,9 @@ from jaxleas.distillation.collect import Walks
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
-from jaxleas.training.brax_blocks import PPONetworks
 from jaxleas.training.config import RunConfig
+from jaxleas.training.loss import action_distribution
+from jaxleas.training.networks import dense, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
 
@@ -30,8 +31,8 @@ class Episodes:
         walks: the configurations, [N, T+1]: what a planner is asked about.
         observation: before each step.
         raw_action: before the tanh.
-        log_prob: of that action by the policy that walked.
-        logits: of that policy: means and scales of the action's distribution.
+        location: of the normal distribution that it was drawn from.
+        deviation: of that distribution.
         reward: for each step.
         terminated: the step met an invalid configuration (R*, C).
         reached: the step reached a goal.
@@ -43,8 +44,8 @@ class Episodes:
     walks: Walks
     observation: Float[np.ndarray, "N T size"]
     raw_action: Float[np.ndarray, "N T 4"]
-    log_prob: Float[np.ndarray, "N T"]
-    logits: Float[np.ndarray, "N T 8"]
+    location: Float[np.ndarray, "N T 4"]
+    deviation: Float[np.ndarray, "N T 4"]
     reward: Float[np.ndarray, "N T"]
     terminated: Bool[np.ndarray, "N T"]
     reached: Bool[np.ndarray, "N T"]
@@ -57,19 +58,17 @@ class Episodes:
         return len(self.steps)
 
 
-def make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks, robots: int) -> Walk:
+def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
     """Return the walk: fresh starts, then one whole episode each. It is pure; jit it.
 
     Args:
         config: of the run.
         env: the task; its condition ends an episode, the exact planner is asked later.
-        networks: actor and critic.
         robots: that walk at once.
 
     Returns:
         A function (world, state, key) -> arrays that `to_host` understands.
     """
-    distribution = networks.parametric_action_distribution
     steps, numbers = config.env.episode_steps, PpoParams.of(config)
 
     def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
@@ -82,21 +81,18 @@ def make_walk(config: RunConfig, env: SteeringEnv, networks: PPONetworks, robots
 
         def advance(carry, noise_now):
             episode, observation, walking = carry
-            logits = networks.policy_network.apply(
-                state.normaliser, state.params.policy, observation
+            normalised = normalise(observation, state.normaliser)
+            location, deviation = action_distribution(
+                dense(state.params.policy, normalised, config.network.activation)
             )
-            normal: Any = distribution.create_dist(logits)
-            raw_action = normal.loc + normal.scale * noise_now
-            log_prob = distribution.log_prob(logits, raw_action)
-            after, outcome = env.step(
-                world.atlas, weights, episode, distribution.postprocess(raw_action)
-            )
+            raw_action = location + deviation * noise_now
+            after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))
             terminated = walking & outcome.terminated
             record = {
                 "observation": observation,
                 "raw_action": raw_action,
-                "log_prob": log_prob,
-                "logits": logits,
+                "location": location,
+                "deviation": deviation,
                 "reward": outcome.reward,
                 "terminated": terminated,
                 "reached": walking & outcome.reached,

@@ -17,7 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxleas.distillation.config import FaithfulConfig
-from jaxleas.distillation.cutting import Stream, cut, to_transitions
+from jaxleas.distillation.cutting import Stream, cut, to_experience
 from jaxleas.distillation.episodes import Episodes, make_walk, to_host
 from jaxleas.distillation.faithful_metrics import Tally, batch_metrics
 from jaxleas.envs.steering.env import SteeringEnv
@@ -60,8 +60,8 @@ class Faithful:
     def __post_init__(self) -> None:
         self.networks = make_networks(self.config.network, self.env)
         robots = self.faithful.robots
-        self._walk = jax.jit(make_walk(self.config, self.env, self.networks, robots))
-        self._update = jax.jit(make_update(self.config, self.env, self.networks))
+        self._walk = jax.jit(make_walk(self.config, self.env, robots))
+        self._update = jax.jit(make_update(self.config, self.env))
         self._empty()
 
     def _empty(self) -> None:
@@ -144,8 +144,8 @@ class Faithful:
         ppo = self.config.ppo
         key, learn_key = jax.random.split(state.key)
         walked = batch_metrics(batch, int(state.update)) | self.tally.take()
-        transitions = to_transitions(batch, ppo.environments, ppo.unroll)
-        state, learned = self._update(state, transitions, learn_key)
+        experience, after = to_experience(batch, ppo.environments, ppo.unroll)
+        state, learned = self._update(state, experience, after, learn_key)
         return state.replace(key=key), walked | jax.device_get(learned)  # type: ignore[attr-defined]
 
     def _ask(self, walked: Any) -> Wave:

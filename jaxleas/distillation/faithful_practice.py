@@ -48,7 +48,7 @@ def practise_faithfully(folder: RoundFolder, training: Faithful, learned: Learne
 
 def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None:
     config = training.config
-    checkpoints = Checkpoints(run.checkpoints)
+    checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     fresh = training.fresh_state(learned)
     step, state = 0, fresh
     resuming = bool(checkpoints.steps())

@@ -16,8 +16,25 @@ that was killed at any moment goes on from the stage it was in.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from jaxleas.files import read_json
+from jaxleas.types.errors import InputError
 
 CONFIG = "config.yaml"
+
+
+def read_done(path: Path, *keys: str) -> dict[str, Any]:
+    """Read what a stage wrote when it was done.
+
+    Raises:
+        InputError: a key is missing, or holds no number.
+    """
+    content = read_json(path)
+    for key in keys:
+        if not isinstance(content, dict) or type(content.get(key)) not in (int, float):
+            raise InputError(f"{path} does not say {key}, a number; without it, it is done again")
+    return content
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.evaluation.table import plain_table
-from jaxleas.labels.settings import SETTINGS, require_settings, settings_from
+from jaxleas.labels.settings import SETTINGS, kind_of, require_settings, settings_from
 from jaxleas.types.errors import InputError
 
 
@@ -59,7 +59,8 @@ def evaluate(
         baseline: judge RB-Lin and RB-Kino beside it.
         seed: of scenes and starts; training never sees any of them.
         held_out: judge on terrain to choose and tune by, not on that of evaluation.
-        planners: sampling, mip, sl1m or none; all three for the suite thesis.
+        planners: sampling, mip, sl1m, MODULE:CLASS of your own, or none; the first three for the
+            suite thesis.
         methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
             policies; by default all.
         policies: further ones, each as name=path.
@@ -83,7 +84,7 @@ def evaluate(
     further = parse_policies(_words(policies) or ())
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
-    refusal = load_refusal(surrogate, threshold)
+    refusal = load_refusal(surrogate, threshold, names)
     candidate = load_candidate(run, refusal)
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
@@ -141,7 +142,7 @@ def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
 
 def _given(planner: str, given: dict[str, Any]) -> dict[str, Any]:
     """Return those of the settings that the planner has."""
-    return {name: each for name, each in given.items() if name in SETTINGS[planner].model_fields}
+    return {name: each for name, each in given.items() if name in kind_of(planner).model_fields}
 
 
 def _words(given: Sequence[str] | None) -> list[str] | None:

@@ -24,6 +24,8 @@ class StepRow(Strict):
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of `planned`."""
+    undecided: Fraction | None = None
+    """Of all starts: the planner ran out of time; counted as not planned."""
     mean_step: Length | None
     """Of the root from one kept configuration to the next, over the paths that reached [m]."""
     steps: Length | None

@@ -92,6 +92,7 @@ def step_row(cell: Cell, method: str, keep_every: int, judged: Judged) -> StepRo
     paths = [walked.path(int(row)) for row in np.flatnonzero(walked.reached)]
     steps = [step_lengths(path, keep_every) for path in paths]
     good = [each for each in judged.verdicts if each is not None and each.success]
+    late = [each for each in judged.verdicts if each is not None and not each.decided]
     low, high = wilson_interval(len(good), cell.starts)
     every = np.concatenate(steps) if steps else np.zeros(0)
     return StepRow(
@@ -103,6 +104,7 @@ def step_row(cell: Cell, method: str, keep_every: int, judged: Judged) -> StepRo
         planned=rounded(len(good) / cell.starts),
         low=rounded(low),
         high=rounded(high),
+        undecided=rounded(len(late) / cell.starts),
         mean_step=rounded(every.mean()) if len(every) else None,
         steps=rounded(np.mean([len(each) for each in steps])) if steps else None,
         seconds=rounded(np.mean([each.seconds for each in good])) if good else None,
@@ -161,8 +163,8 @@ def _with_course(
         method=method,
         reached=bool(walked.reached[row]),
         planned=bool(judged.planned[row]),
-        x=_plain(path[::keep_every][:-1, 0]),
-        step=_plain(step_lengths(path, keep_every)),
+        x=tuple(path[::keep_every][:-1, 0].astype(np.float64).round(4).tolist()),
+        step=tuple(step_lengths(path, keep_every).round(4).tolist()),
     )
     ground = _ground(grounds, cell)
     x_min, x_max, _, _ = ground.extent

@@ -1,6 +1,7 @@
 """The risk dial at run time: guide paths that a surrogate foresees to fail are refused."""
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -45,12 +46,19 @@ class Refusal:
         }
 
 
-def load_refusal(surrogate: Path | None, threshold: float | None) -> Refusal | None:
+def load_refusal(
+    surrogate: Path | None, threshold: float | None, planners: Sequence[str] = ()
+) -> Refusal | None:
     """Return the refusal asked for on the command line, if any.
 
+    Args:
+        surrogate: its file.
+        threshold: least probability of success.
+        planners: that will judge; none: the conditions alone.
+
     Raises:
-        InputError: one of the two is missing, the file is no surrogate, or the threshold is no
-            probability below 1.
+        InputError: one of the two is missing, the file is no surrogate or stands in for none of the
+            planners, or the threshold is no probability below 1.
     """
     if surrogate is None and threshold is None:
         return None
@@ -61,6 +69,12 @@ def load_refusal(surrogate: Path | None, threshold: float | None) -> Refusal | N
     if not 0.0 <= threshold < 1.0:
         raise InputError(f"--threshold is {threshold:g}; give a probability, from 0 to below 1")
     found = read_surrogate(surrogate)
+    mine = found.identity.planner
+    if planners and mine not in planners:
+        raise InputError(
+            f"{surrogate} stands in for the {mine} planner, but {', '.join(planners)} will judge:"
+            f" give a surrogate of theirs, or --planners {mine}"
+        )
     fingerprint = hashlib.sha256(Path(surrogate).read_bytes()).hexdigest()
     return Refusal(found, threshold, fingerprint, str(surrogate))
 

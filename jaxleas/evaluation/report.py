@@ -24,6 +24,7 @@ from jaxleas.evaluation.table import (
 )
 from jaxleas.files import read_json, write_bytes, write_text
 from jaxleas.training.metrics import read_metrics
+from jaxleas.types import InputError
 
 TEMPLATE = "report.html"
 MOST_LISTED = 12
@@ -195,7 +196,10 @@ def _text(path: Path) -> str:
 def _provenance(path: Path) -> list[tuple[str, str]]:
     if not path.is_file():
         return []
-    return [(key, _plain(value)) for key, value in read_json(path).items()]
+    record = read_json(path)
+    if not isinstance(record, dict):
+        raise InputError(f"{path} is no record of a run: it needs an object")
+    return [(key, _plain(value)) for key, value in record.items()]
 
 
 def _plain(value: Any) -> str:

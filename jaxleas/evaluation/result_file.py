@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from jaxleas.files import read_json, write_json
+from jaxleas.files import read_json, require_version, write_json
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -140,6 +140,7 @@ def read_evaluation(path: str | Path) -> Evaluation:
     content = read_json(path)
     if not isinstance(content, dict):
         raise InputError(f"{path} is not an evaluation: it needs an object with `suite`, `cells`")
+    require_version(content, VERSION, path)
     try:
         return Evaluation.model_validate(content)
     except ValidationError as error:

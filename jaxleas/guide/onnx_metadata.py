@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ObservationLayout, layout_named
+from jaxleas.files import parse_json
 from jaxleas.types import InputError
 
 FORMAT = 1
@@ -59,7 +60,8 @@ def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
         )
     try:
         form, observation, stated = (
-            json.loads(metadata[key]) for key in ("format", "observation", "steering_config")
+            parse_json(metadata[key], f"{path}: {key} of its metadata")
+            for key in ("format", "observation", "steering_config")
         )
         name = observation["name"]
     except (ValueError, TypeError, KeyError) as error:

@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from jaxleas.types.errors import InputError
+
 if TYPE_CHECKING:
+    from jaxleas.files import FolderLock
     from jaxleas.labels.workers import Workers
 
 
@@ -14,7 +17,8 @@ def label(
     *,
     scene: Path,
     out: Path,
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling",
+    planner: str = "sampling",
+    parameters: Sequence[str] | None = None,
     keep_every: int | None = None,
     samples: int | None = None,
     heuristic: Literal["fixed_step", "manipulability", "effort", "reference"] | None = None,
@@ -34,7 +38,8 @@ def label(
         guides: guide path files, .npz.
         scene: that they walk on, .json.
         out: folder of the verdict files; the same command goes on where it was interrupted.
-        planner: that judges.
+        planner: that judges: sampling, mip, sl1m, or MODULE:CLASS of your own.
+        parameters: of a planner of your own, as longest_step=0.3.
         keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
         samples: sampling: leg configurations in the data base, 25000 by default.
         heuristic: sampling: by which candidates are tried, fixed_step by default.
@@ -55,7 +60,7 @@ def label(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     from jaxleas.labels.label import label_shards, plan_shards
-    from jaxleas.labels.settings import settings_from
+    from jaxleas.labels.settings import settings_from, settings_of
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.labels.workers import require_count
 
@@ -71,6 +76,7 @@ def label(
         time_limit=time_limit,
         max_combinations=max_combinations,
         weights=weights,
+        **settings_of(parameters or ()),
     )
     if processes is not None:
         require_count(processes)
@@ -82,7 +88,10 @@ def label(
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
-        with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        with (
+            _held(Path(out)),
+            Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        ):
             task = progress.add_task("label", total=sum(map(len, shards)))
             judged, before = label_shards(shards, team, lambda done: progress.advance(task, done))
     finally:
@@ -96,6 +105,21 @@ def label(
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )
+
+
+def _held(out: Path) -> "FolderLock":
+    """Return a hold on the folder of verdicts: two that write it would judge all twice.
+
+    Raises:
+        InputError: somebody else holds it, or it cannot be made.
+    """
+    from jaxleas.files import FolderLock
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {out}: {error.strerror or error}") from error
+    return FolderLock(out, "the label folder", "give another --out")
 
 
 def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":

@@ -17,12 +17,12 @@ from jaxleas.files import read_json, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import Objective
 from jaxleas.sweeps.folder import SweepFolder
-from jaxleas.sweeps.job import Outcome, outcome_file, read_outcome, stop_file, write_job
+from jaxleas.sweeps.job import Outcome, outcome_file, stop_file, write_job
 from jaxleas.sweeps.objectives import learning_curve
+from jaxleas.sweeps.open_trial import OpenTrial, result_of
 from jaxleas.sweeps.results import TrialResult, write_results
 from jaxleas.sweeps.runners import Runner
 from jaxleas.sweeps.study import Study
-from jaxleas.training.config import RunConfig
 from jaxleas.training.interruption import Interruption
 from jaxleas.types.errors import InputError, JaxleasError
 
@@ -35,29 +35,6 @@ class InterruptedSweepError(JaxleasError):
     """The sweep was asked to stop; everything done so far is saved."""
 
     exit_code = 130
-
-
-@dataclass
-class _Open:
-    """A trial that is not told yet."""
-
-    trial: Any
-    values: dict[str, Any]
-    configs: dict[int, RunConfig]
-    folder: SweepFolder
-    reported: int = 0
-    pruned: bool = False
-
-    @property
-    def number(self) -> int:
-        return self.trial.number
-
-    def run(self, seed: int) -> Path:
-        return self.folder.run(self.number, seed)
-
-    def outcomes(self) -> dict[int, Outcome]:
-        found = {seed: read_outcome(self.run(seed)) for seed in self.configs}
-        return {seed: outcome for seed, outcome in found.items() if outcome is not None}
 
 
 @dataclass
@@ -77,7 +54,7 @@ class Conductor:
     study: Study
     runner: Runner
     on_change: Callable[[list[TrialResult], int], None] = lambda results, running: None
-    _open: dict[int, _Open] = field(default_factory=dict)
+    _open: dict[int, OpenTrial] = field(default_factory=dict)
     _flying: set[Path] = field(default_factory=set)
     _deaths: dict[Path, tuple[int, int]] = field(default_factory=dict)
     _batches: dict[Path, list[int]] = field(default_factory=dict)
@@ -120,7 +97,7 @@ class Conductor:
             self._keep()
             return
         reported = self.study.reported(trial)
-        self._open[trial.number] = _Open(trial, values, configs, self.folder, reported)
+        self._open[trial.number] = OpenTrial(trial, values, configs, self.folder, reported)
 
     def _hand_out(self) -> None:
         """Give the runner jobs while it takes any and there are any."""
@@ -141,7 +118,7 @@ class Conductor:
             if trial.number in self._open:
                 yield from self._next_of(self._open[trial.number])
 
-    def _next_of(self, each: _Open) -> Iterator[Path]:
+    def _next_of(self, each: OpenTrial) -> Iterator[Path]:
         """Yield the jobs of a trial that can begin: its first seed's, then all the others'.
 
         So the first seed's curve can end the trial before the others cost anything.
@@ -183,7 +160,7 @@ class Conductor:
             runs = [Path(each["run"]) for each in read_json(job)["trainings"]]
             self._batches[job] = sorted({int(run.parent.name) for run in runs})
 
-    def _write_job(self, job: Path, trainings: Sequence[tuple[_Open, int]]) -> None:
+    def _write_job(self, job: Path, trainings: Sequence[tuple[OpenTrial, int]]) -> None:
         objectives = TypeAdapter(list[Objective]).dump_python(
             list(self.sweep.config.objectives), mode="json"
         )
@@ -227,20 +204,19 @@ class Conductor:
             return
         for each in self._open.values():
             run = each.run(next(iter(each.configs)))
-            if each.pruned or outcome_file(run).is_file():
-                continue
+            ended = outcome_file(run).is_file()
             curve = learning_curve(run)
             for examination in range(each.reported, len(curve)):
                 each.reported = examination + 1
-                if self.study.report(each.trial, examination + 1, curve[examination][1]):
+                prune = self.study.report(each.trial, examination + 1, curve[examination][1])
+                if prune and not ended and not each.pruned:
                     each.pruned = True
                     write_text(stop_file(run), "")
-                    break
 
     def _tell_finished(self) -> None:
         """Tell the trials whose trainings all have their outcome."""
         for number, each in list(self._open.items()):
-            result = _result(each)
+            result = result_of(each)
             if result is not None:
                 self.study.tell(each.trial, result)
                 del self._open[number]
@@ -251,21 +227,3 @@ class Conductor:
         write_results(self.folder.path, results, self.sweep)
         self.on_change(results, len(self._flying))
         return results
-
-
-def _result(each: _Open) -> TrialResult | None:
-    """Return a trial's result, or None while it is not decided."""
-    outcomes = each.outcomes()
-    seconds = round(sum(outcome.seconds for outcome in outcomes.values()), 1)
-    bad = next((outcome for outcome in outcomes.values() if outcome.state != "done"), None)
-    seeds = {str(seed): outcome.values for seed, outcome in outcomes.items()}
-    if bad is not None:
-        return TrialResult(each.number, bad.state, each.values, {}, seeds, bad.reason, seconds)
-    if len(outcomes) < len(each.configs):
-        return None
-    names = next(iter(outcomes.values())).values
-    means = {
-        name: sum(outcome.values[name] for outcome in outcomes.values()) / len(outcomes)
-        for name in names
-    }
-    return TrialResult(each.number, "done", each.values, means, seeds, "", seconds)

@@ -10,13 +10,11 @@ report.html                 pictures
 lock                        held while a process conducts the sweep
 """
 
-import fcntl
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from uuid import uuid4
 
-from jaxleas.files import read_json, write_json, write_text
+from jaxleas.files import FolderLock, read_json, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
 from jaxleas.training.config import RunConfig
@@ -38,7 +36,7 @@ class SweepFolder:
 
     path: Path
     owner: str
-    _lock: int
+    _lock: FolderLock
 
     @property
     def journal(self) -> Path:
@@ -59,7 +57,7 @@ class SweepFolder:
 
     def close(self) -> None:
         """Let another process conduct the sweep."""
-        os.close(self._lock)
+        self._lock.close()
 
 
 def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
@@ -70,10 +68,8 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
     """
     path = Path(path).absolute()
     known = path / "sweep.json"
-    if path.exists() and not path.is_dir():
-        raise InputError(f"{path} is a file; --out names a folder")
-    if not known.is_file() and path.is_dir() and {e.name for e in path.iterdir()} - _BEGINNINGS:
-        raise InputError(f"{path} exists and is no sweep: give another --out")
+    if not known.is_file():
+        require_vacant(path, _BEGINNINGS, "sweep")
     lock = hold(path)
     try:
         if not known.is_file():
@@ -86,7 +82,7 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
         _require_same(path, sweep)
         return SweepFolder(path, record["owner"], lock)
     except BaseException:
-        os.close(lock)
+        lock.close()
         raise
 
 
@@ -106,22 +102,27 @@ def _require_same(path: Path, sweep: Sweep) -> None:
         )
 
 
-def hold(path: Path) -> int:
-    """Make a folder and return a descriptor that holds it until it is closed.
+def require_vacant(path: Path, beginnings: set[str], kind: str) -> None:
+    """Refuse a folder that holds more than the beginnings of what is to be made there.
+
+    Raises:
+        InputError: it does, or it is a file.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path} is a file; --out names a folder")
+    names = {entry.name for entry in path.iterdir()} if path.is_dir() else set()
+    if {name for name in names if not name.startswith(".")} - beginnings:
+        raise InputError(f"{path} exists and is no {kind}: give another --out")
+
+
+def hold(path: Path) -> FolderLock:
+    """Make a folder and hold it until the lock is closed.
 
     Raises:
         InputError: it cannot be made, or another process holds it.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(path / "lock", os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
         raise InputError(f"cannot make the folder {path}: {error.strerror}") from error
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(descriptor)
-        raise InputError(
-            f"another process works in {path}; wait for it, or give another --out"
-        ) from error
-    return descriptor
+    return FolderLock(path, "the folder", "give another --out")

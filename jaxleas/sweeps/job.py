@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.cli_guard import run_guarded
 from jaxleas.files import read_json, write_json
 from jaxleas.types.errors import InputError, JaxleasError
 
@@ -170,24 +169,29 @@ def work(path: str | Path) -> None:
     patiently(do_job, path)
 
 
-def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 60.0) -> None:
+def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 90.0) -> None:
     """Do a job, waiting where its run folder is still held by a worker that is about to die."""
     until = time.monotonic() + seconds
     while True:
         try:
             return function(path)
         except InputError as error:
-            if "is in use by process" not in str(error) or time.monotonic() > until:
+            if "is in use by" not in str(error) or time.monotonic() > until:
                 raise
             time.sleep(0.5)
 
 
-def main(arguments: Sequence[str]) -> None:
-    """Do the job that the first argument names."""
+def main(arguments: Sequence[str]) -> int:
+    """Do the job that the first argument names; return the exit code."""
     if LIFELINE in arguments:
         _die_with_parent()
-    work(arguments[0])
+    try:
+        work(arguments[0])
+    except JaxleasError as error:  # into the job's log
+        print(f"{type(error).__name__}: {error}")
+        return getattr(error, "exit_code", 2)
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(run_guarded(lambda: main(sys.argv[1:])))
+    sys.exit(main(sys.argv[1:]))

@@ -1,7 +1,8 @@
 """A population: trainings that differ in seeds and numbers only, in one compiled program.
 
-The members of a device take turns inside the program (`lax.map`), and devices divide the members:
-each member's arithmetic is that of a run alone, and the terrain is there once.
+Devices divide the members, and the terrain is there once. On a processor the members of a device
+take turns inside the program (`lax.map`): vectorised they took twice as long, because batches of
+small matrix products run on one thread. Other devices do them all at once (`vmap`).
 """
 
 from collections.abc import Callable, Sequence
@@ -63,22 +64,25 @@ class Population:
         self.world = jax.device_put(training_world(config), whole)
         self.held_out = jax.device_put(held_out_world(config), whole)
         networks = make_networks(config.network, self.env)
-        step = make_train_step(config, self.env, networks)
+        step = make_train_step(config, self.env)
         examine = make_examination(config, self.env, networks)
 
         def advance(world: World, states: TrainState, params: PpoParams):
-            return jax.lax.map(lambda member: step(world, *member), (states, params))
+            return each_member(lambda member: step(world, *member), (states, params))
 
         def examine_all(world: World, normaliser: Any, policy: Any) -> Metrics:
-            return jax.lax.map(lambda member: examine(world, *member), (normaliser, policy))
+            return each_member(lambda member: examine(world, *member), (normaliser, policy))
 
         def begin(world: World, seeds: Array) -> TrainState:
-            return jax.lax.map(
+            return each_member(
                 lambda seed: initial_state(config, self.env, world, networks, seed), seeds
             )
 
-        self.train_step = jax.jit(_each_device(advance, mesh, 2), donate_argnums=1)
-        self.examine = jax.jit(_each_device(examine_all, mesh, 2))
+        options = _compiler_options(mesh)
+        self.train_step = jax.jit(
+            _each_device(advance, mesh, 2), donate_argnums=1, compiler_options=options
+        )
+        self.examine = jax.jit(_each_device(examine_all, mesh, 2), compiler_options=options)
         compiled = jax.jit(_each_device(begin, mesh, 1))
         seeds = np.array([each.seed for each in self.configs], np.int32)
         self.fresh_states = lambda: compiled(self.world, self.place(seeds))
@@ -130,11 +134,24 @@ def value_of(config: Any, name: str) -> Any:
     return config
 
 
+def each_member(function: Callable[[Any], Any], members: Any) -> Any:
+    """Return what `function` makes of every member of arrays [members, ...]."""
+    if jax.default_backend() == "cpu":
+        return jax.lax.map(function, members)
+    return jax.vmap(function)(members)
+
+
 def _mesh(members: int) -> Mesh:
     """Return as many of this process's devices as divide the members evenly."""
     devices = jax.local_devices()
     count = next(n for n in range(min(members, len(devices)), 0, -1) if members % n == 0)
     return Mesh(np.array(devices[:count]), (AXIS,))
+
+
+def _compiler_options(mesh: Mesh) -> dict[str, Any] | None:
+    """Give each core its own members, rather than all cores a part of every matrix product."""
+    several_cores = jax.default_backend() == "cpu" and mesh.size > 1
+    return {"xla_cpu_multi_thread_eigen": False} if several_cores else None
 
 
 def _each_device(function: Callable, mesh: Mesh, arguments: int) -> Callable:

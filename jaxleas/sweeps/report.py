@@ -7,7 +7,7 @@ from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.charts import importance_bars, learning_curves, parallel_coordinates
 from jaxleas.sweeps.folder import SweepFolder
 from jaxleas.sweeps.objectives import is_maximised, learning_curve
-from jaxleas.sweeps.results import TrialResult, best_of, shown_param, shown_value
+from jaxleas.sweeps.results import TrialResult, best_of, ranked, shown_param, shown_value
 
 TEMPLATE = "report.html"
 
@@ -37,7 +37,6 @@ def report_html(
         for seed in config.seeds
     }
     best = [f"trial {each.number}, seed {seed}" for each in front for seed in config.seeds]
-    rest = sorted((r for r in results if r not in front), key=lambda r: (r.state, r.number))
     first = config.objectives[0]
     source = resources.files("jaxleas.sweeps").joinpath(TEMPLATE).read_text(encoding="utf-8")
     template = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(
@@ -62,7 +61,7 @@ def report_html(
                 "params": [shown_param(each.params.get(name)) for name in config.space],
                 "reason": each.reason,
             }
-            for each in [*front, *rest]
+            for each in ranked(results, config.objectives)
         ],
         coordinates=[
             (each.name, parallel_coordinates(results, config.space, each.name, is_maximised(each)))

@@ -59,6 +59,15 @@ def best_of(results: Sequence[TrialResult], objectives: Sequence[Objective]) -> 
     return sorted(front, key=score, reverse=True)
 
 
+def ranked(results: Sequence[TrialResult], objectives: Sequence[Objective]) -> list[TrialResult]:
+    """Return all trials in the order of a table: the best, then by the first objective."""
+    first, front = objectives[0], best_of(results, objectives)
+    sign = -1.0 if is_maximised(first) else 1.0
+    others = [each for each in results if each not in front]
+    others.sort(key=lambda each: (each.state != "done", sign * each.values.get(first.name, 0.0)))
+    return [*front, *others]
+
+
 def write_results(folder: Path, results: Sequence[TrialResult], sweep: Sweep) -> None:
     """Write results.json and results.csv.
 
@@ -97,13 +106,9 @@ def plain_table(results: Sequence[TrialResult], sweep: Sweep, most: int = 40) ->
     objectives = sweep.config.objectives
     total = float(sweep.base.ppo.updates * sweep.base.ppo.batch)
     front = best_of(results, objectives)
-    first = objectives[0]
-    sign = -1.0 if is_maximised(first) else 1.0
-    others = [each for each in results if each not in front]
-    others.sort(key=lambda each: (each.state != "done", sign * each.values.get(first.name, 0.0)))
     headings = ["trial", "state", *(each.name for each in objectives), *sweep.config.space]
     lines = [headings]
-    for each in [*front, *others][:most]:
+    for each in ranked(results, objectives)[:most]:
         mark = "*" if each in front else ""
         shown = [shown_value(one, each.values.get(one.name), total) for one in objectives]
         params = [shown_param(each.params.get(name)) for name in sweep.config.space]

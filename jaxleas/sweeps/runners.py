@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -15,6 +15,7 @@ from jaxleas.labels.ray_workers import RayWorkers
 from jaxleas.sweeps.job import LIFELINE, work
 from jaxleas.types.errors import InputError
 
+_COMMAND = (sys.executable, "-m", "jaxleas.sweeps.job")
 GRACE = 60.0  # to save what was done, after being asked to stop [s]
 
 
@@ -46,10 +47,16 @@ class _Child:
 
 
 class Processes:
-    """A process a job. They end when this process does, however it ends."""
+    """A process a job. They end when this process does, however it ends.
 
-    def __init__(self, count: int) -> None:
+    Args:
+        count: of jobs at the same time.
+        command: that does the job whose file is its next argument.
+    """
+
+    def __init__(self, count: int, command: Sequence[str] = _COMMAND) -> None:
         self.count = count
+        self._command = tuple(command)
         self._children: list[_Child] = []
 
     @property
@@ -66,7 +73,7 @@ class Processes:
         """Begin a job."""
         with log_of(job).open("ab") as log:
             process = subprocess.Popen(
-                [sys.executable, "-m", "jaxleas.sweeps.job", str(job), LIFELINE],
+                [*self._command, str(job), LIFELINE],
                 stdin=subprocess.PIPE,  # closes when this process ends: the child then ends too
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -106,8 +113,12 @@ class RayJobs:
     Ray, begins the job of a dead worker again, so that deaths are counted in one place.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, function: Callable[[str], str] | None = None) -> None:
         """Connect to Ray.
+
+        Args:
+            count: of jobs at the same time.
+            function: that does the job whose file it is given, and returns its last words.
 
         Raises:
             InputError: Ray is not installed or does not answer.
@@ -116,7 +127,7 @@ class RayJobs:
         self._ray: Any = import_module("ray")
         # A process of its own for every job: JAX's devices are chosen once in a process.
         options = {"max_retries": 0, "num_cpus": 1, "max_calls": 1}
-        self._remote = self._ray.remote(**options)(_work_in_ray)
+        self._remote = self._ray.remote(**options)(function or _work_in_ray)
         self.count = count
         self._flying: dict[Any, Path] = {}
 

@@ -1,5 +1,6 @@
 """A sweep's study in Optuna: made or gone on with, and asked for trials one number at a time."""
 
+import warnings
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -131,15 +132,15 @@ class Study:
 
         Empty where too few trials are there, or all are as good.
         """
-        first = self.sweep.config.objectives[0]
-        sign = -1.0 if is_maximised(first) else 1.0
+        objectives = self.sweep.config.objectives
+        sign = -1.0 if is_maximised(objectives[0]) else 1.0
+        target = None if len(objectives) == 1 else lambda trial: sign * trial.values[0]
         evaluator = self._optuna.importance.PedAnovaImportanceEvaluator()
         try:
-            return self._optuna.importance.get_param_importances(
-                self._study,
-                evaluator=evaluator,
-                target=lambda trial: sign * trial.values[0],
-            )
+            with warnings.catch_warnings(action="ignore"):  # about few trials: the report says so
+                return self._optuna.importance.get_param_importances(
+                    self._study, evaluator=evaluator, target=target
+                )
         except (ValueError, RuntimeError):
             return {}
 

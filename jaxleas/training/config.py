@@ -126,6 +126,13 @@ class HeldOutConfig(Strict):
     """A start that has not reached its goal by then has failed."""
 
 
+class CheckpointsConfig(Strict):
+    """Which of the states written at every examination are kept."""
+
+    keep_last: Count = 2
+    """The newest; the best by held-out success is always kept, too."""
+
+
 class FinalConfig(Strict):
     """What follows training: the verdict, the artifacts and the report."""
 
@@ -147,4 +154,5 @@ class RunConfig(Strict):
     network: NetworkConfig = NetworkConfig()
     ppo: PpoConfig = PpoConfig()
     held_out: HeldOutConfig = HeldOutConfig()
+    checkpoints: CheckpointsConfig = CheckpointsConfig()
     final: FinalConfig = FinalConfig()

@@ -7,6 +7,7 @@ the file that this one extends, or on the command line.
 """
 
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,6 +23,7 @@ Model = TypeVar("Model", bound=Strict)
 # Where values come from, weakest first: (what to call it in a sentence, what it states).
 Layers = list[tuple[str, dict[str, Any]]]
 COMMAND_LINE = "command line"
+MAX_EXTENDED = 20
 
 
 def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] = ()) -> Model:
@@ -64,9 +66,25 @@ def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
     parent = stated.pop("extends", None)
     if parent is None:
         return [(str(path), stated)]
-    if not isinstance(parent, str):
-        raise InputError(f"{path}: extends is {parent!r}, but it should name one YAML file")
+    if not isinstance(parent, str) or "\0" in parent:
+        raise InputError(f"{path}: extends is {parent!r:.60}, but it should name one YAML file")
+    _require_below(path, parent)
+    if len(above) >= MAX_EXTENDED:
+        raise InputError(f"{path}: more than {MAX_EXTENDED} files extend one another")
     return [*_layers(path.parent / parent, (*above, path.resolve())), (str(path), stated)]
+
+
+def _require_below(path: Path, parent: str) -> None:
+    """Refuse to read a file outside the folder of the one that extends it: it may be a stranger's.
+
+    A link inside the folder is the owner's own doing.
+    """
+    folder = path.parent.absolute()
+    wanted = Path(os.path.normpath(folder / parent))
+    if Path(parent).is_absolute() or not wanted.is_relative_to(folder):
+        raise InputError(
+            f"{path}: extends is {parent!r:.200}, but it should lie in {path.parent} or below it"
+        )
 
 
 def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """Metrics of a run: one JSON object a line, and the same numbers for all who watch."""
 
 import json
+import logging
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -9,9 +11,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from jaxleas.files import write_text
+from jaxleas.files import parse_json, write_text
 from jaxleas.training.watching import Audience, Status, open_watchers
 from jaxleas.types.errors import InputError
+
+_LOG = logging.getLogger("jaxleas")
 
 
 class MetricsLog:
@@ -44,7 +48,7 @@ class MetricsLog:
         self.path = Path(folder) / "metrics.jsonl"
         kept: list[str] = []
         if truncate_after_step is not None:
-            kept = [line for line, row in _rows(self.path) if row["step"] <= truncate_after_step]
+            kept = _rows_to_keep(self.path, truncate_after_step)
         write_text(self.path, "".join(kept))
         spent = json.loads(kept[-1])["seconds"] if kept else 0.0
         self._start = time.monotonic() - spent
@@ -71,6 +75,17 @@ class MetricsLog:
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
         self._audience.row(int(step), numbers)
+
+    def sync(self) -> None:
+        """Have all lines on the disk; may be called from another thread.
+
+        Raises:
+            InputError: they cannot be written.
+        """
+        try:
+            os.fsync(self._stream.fileno())
+        except OSError as error:
+            raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
 
     def close(self, status: Status = "finished") -> None:
         """Close the file; give the watchers a moment to finish."""
@@ -114,14 +129,54 @@ def read_metrics(path: str | Path) -> list[dict[str, Any]]:
     return [row for _, row in _rows(Path(path))]
 
 
+def _rows_to_keep(path: Path, last_step: int) -> list[str]:
+    """Return the lines up to a step; say so where a damaged line has cost some of them."""
+    rows, problem = _readable_rows(path)
+    kept = [(line, row["step"]) for line, row in rows if row["step"] <= last_step]
+    if problem and len(kept) == len(rows) and (not kept or kept[-1][1] < last_step):
+        first = kept[-1][1] if kept else 0
+        _LOG.warning("%s: the metrics of steps %d to %d are lost", problem, first, last_step)
+    return [line for line, _ in kept]
+
+
 def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Return each whole line, as it is and parsed."""
+    """Return each whole line, as it is and parsed.
+
+    Raises:
+        InputError: a line is no row.
+    """
+    rows, problem = _readable_rows(path)
+    if problem:
+        raise InputError(problem)
+    return rows
+
+
+def _readable_rows(path: Path) -> tuple[list[tuple[str, dict[str, Any]]], str]:
+    """Return the whole lines up to the first that is no row, and what is wrong with that one."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.is_file() else []
-        whole = [line for line in lines if line.endswith("\n")]
-        rows = [(line, json.loads(line)) for line in whole]
-        if all({"step", "seconds"} <= row.keys() for _, row in rows):
-            return rows
-    except (OSError, ValueError, AttributeError) as error:
-        raise InputError(f"{path} cannot be read: {error}") from error
-    raise InputError(f"{path} is damaged: a line lacks `step` or `seconds`")
+        content = path.read_bytes() if path.is_file() else b""
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    rows = []
+    for number, line in enumerate(content.splitlines(keepends=True), start=1):
+        if not line.endswith(b"\n"):
+            break  # only half written
+        try:
+            row = parse_json(line, f"{path}: line {number}")
+        except InputError as error:
+            return rows, str(error)
+        if not (isinstance(row, dict) and _is_row(row)):
+            return rows, (
+                f"{path} is damaged: line {number} lacks `step` or `seconds`, or holds other than"
+                " numbers"
+            )
+        rows.append((line.decode(), row))
+    return rows, ""
+
+
+def _is_row(row: dict[str, Any]) -> bool:
+    def is_number(value: Any) -> bool:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+
+    known = is_number(row.get("step")) and is_number(row.get("seconds"))
+    return known and all(value is None or is_number(value) for value in row.values())

@@ -1,5 +1,7 @@
 """Actor and critic: Brax's PPO networks over one of two normalisers."""
 
+from typing import Any
+
 import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
@@ -65,3 +67,22 @@ def update_normaliser(
             normaliser, observation, std_min_value=MIN_DEVIATION, std_max_value=1e6
         )
     return normaliser
+
+
+def layers_of(params: Any) -> list[tuple[Array, Array]]:
+    """Return kernel and bias of each layer of a network of Brax's, from the first to the last."""
+    layers = params["params"]
+    names = sorted(layers, key=lambda name: int(name.removeprefix("hidden_")))
+    return [(layers[name]["kernel"], layers[name]["bias"]) for name in names]
+
+
+def dense(params: Any, hidden: Float[Array, "*batch size"], activation: str) -> Array:
+    """Return what a network of Brax's answers to normalised observations."""
+    *inner, (kernel, bias) = layers_of(params)
+    for inner_kernel, inner_bias in inner:
+        hidden = ACTIVATION[activation](_affine(hidden, inner_kernel, inner_bias))
+    return _affine(hidden, kernel, bias)
+
+
+def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
+    return hidden @ kernel + bias.reshape((1,) * (hidden.ndim - 1) + bias.shape)

@@ -91,8 +91,9 @@ def make_optimiser(config: PpoConfig, params: PpoParams) -> optax.GradientTransf
     """
     gradient_steps = config.updates * config.epochs * config.minibatches
     rate = optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
-    return optax.chain(
-        optax.clip_by_global_norm(params.max_gradient_norm), optax.adam(rate, eps=1e-5)
+    # On one vector: a few operations a step instead of a few for each layer.
+    return optax.flatten(
+        optax.chain(optax.clip_by_global_norm(params.max_gradient_norm), optax.adam(rate, eps=1e-5))
     )
 
 

@@ -52,7 +52,7 @@ DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
         (["polytopes", "RF_in_LF", "b"], [-1.0] * 6, ["RF_in_LF bounds no volume"]),
         (["polytopes", "RF_in_LF", "A", 0], [0, 0, 0], ["RF_in_LF: A has a row of zeros"]),
         (["foot_half_size"], [10, 6], ["foot_half_size", "not between 0 and 1 m"]),
-        (["version"], 2, ["has version 2"]),
+        (["version"], 2, ["is of version 2"]),
         (["phases"], KeyError, ["lacks phases"]),
         (["parts"], ["stone_1"], ["parts must be an object"]),
         (["parts"], {"stone_1": "moon"}, ["'stone_1' is part of 'moon'", "no surface"]),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas.distillation.collect import Walks
-from jaxleas.distillation.cutting import Stream, cut, kept_steps, to_transitions
+from jaxleas.distillation.cutting import Stream, cut, kept_steps, to_experience
 from jaxleas.distillation.episodes import Episodes
 from jaxleas.labels import Verdict
 from jaxleas.types import RootMotion
@@ -26,8 +26,8 @@ def episodes(steps, terminated):
         walks=walks,
         observation=number[..., None] * np.ones(SIZE),
         raw_action=number[..., None] * np.ones(4),
-        log_prob=-number,
-        logits=number[..., None] * np.ones(8),
+        location=-number[..., None] * np.ones(4),
+        deviation=number[..., None] * np.ones(4),
         reward=number.astype(np.float32),
         terminated=last & np.array(terminated)[:, None],
         reached=np.zeros((count, TIME), bool),
@@ -62,7 +62,7 @@ def test_tails_are_cut_and_charged_once():
     for robot, (_, _, _, kept, terminated, charged) in enumerate(CASES):
         for time in range(kept):
             last = time == kept - 1
-            assert steps["log_prob"][row] == -(100.0 * robot + time)
+            assert np.all(steps["location"][row] == -(100.0 * robot + time))
             assert steps["terminated"][row] == (last and terminated)
             assert steps["truncated"][row] == (last and not terminated)
             expected = 100.0 * robot + time - COST * (last and charged)
@@ -86,15 +86,15 @@ def test_batches_are_the_stream_row_by_row_and_nothing_is_lost_or_doubled():
     for _ in range(5):
         stream.add(cut(episodes([12, 7], [False, True]), [verdict()] * 2))
         while (batch := stream.batch()) is not None:
-            transitions = to_transitions(batch, rows, unroll)
-            assert transitions.reward.shape == (unroll, rows)
-            walked = np.asarray(transitions.extras["policy_extras"]["log_prob"])
+            experience, after = to_experience(batch, rows, unroll)
+            assert experience.reward.shape == (unroll, rows)
+            walked = np.asarray(experience.location[..., 0])
             taken += [walked[t, r] for r in range(rows) for t in range(unroll)]
             for r in range(rows):
                 follows = batch["observation"][(r + 1) * unroll]
-                np.testing.assert_array_equal(transitions.next_observation[0, r], follows)
+                np.testing.assert_array_equal(after[r], follows)
             ended = batch["terminated"][: rows * unroll].reshape(rows, unroll)
-            np.testing.assert_array_equal(transitions.discount, 1.0 - ended.T)
+            np.testing.assert_array_equal(experience.terminated, ended.T)
     everything = [-(100.0 * robot + t) for robot, n in ((0, 12), (1, 7)) for t in range(n)] * 5
     assert len(stream) + len(taken) == len(everything)
     assert len(stream) >= 1  # the step after the last row waits for its own batch

@@ -105,9 +105,9 @@ def test_whole_episodes_are_walked_and_remember_who_walked_them(training, ground
     logits = training.networks.policy_network.apply(
         state.normaliser, state.params.policy, episodes.observation
     )
-    np.testing.assert_allclose(episodes.logits, logits, atol=1e-5)
-    again = distribution.log_prob(logits, episodes.raw_action)
-    np.testing.assert_allclose(episodes.log_prob, again, atol=1e-4)
+    normal = distribution.create_dist(logits)
+    np.testing.assert_allclose(episodes.location, normal.loc, atol=1e-5)
+    np.testing.assert_allclose(episodes.deviation, normal.scale, atol=1e-5)
     assert episodes.failure_cost == pytest.approx(CONFIG.env.reward.alive)
 
 
@@ -167,8 +167,11 @@ def test_an_interrupted_practice_goes_on_from_what_it_learned(training, tmp_path
     folder = RoundFolder(tmp_path / "out" / "round_1")
     learned = Learned.of(training.fresh_state(None))
 
+    log, sent = folder.run / "metrics.jsonl", []
+
     def interrupt(calls):
-        if calls == 4:
+        if log.is_file() and log.stat().st_size and not sent:  # the first update is written
+            sent.append(calls)
             os.kill(os.getpid(), signal.SIGINT)
 
     training.judge = Strict(interrupt)
@@ -192,3 +195,32 @@ def test_the_mode_is_named_in_the_configuration():
     assert DistillationConfig().mode == "surrogate"
     config = DistillationConfig.model_validate({"mode": "faithful", "faithful": {"ahead": 3}})
     assert config.faithful.ahead == 3
+
+
+class Dizzy(Strict):
+    """A planner with a known rule: it fails at the first turn of more than 0.03 rad a step."""
+
+    def verdict(self, number, path):
+        turn = np.abs((np.diff(path.yaw) + np.pi) % (2 * np.pi) - np.pi)
+        quick = np.flatnonzero(turn > 0.03)
+        last = int(quick[0]) if len(quick) else len(path) - 1
+        good = not len(quick)
+        return Verdict(number, True, good, last, len(path), 1.0, 0, *[None] * 6, "", 0.01)
+
+
+@pytest.mark.slow
+def test_a_policy_learns_to_avoid_what_its_planner_cannot_do(ground):
+    config = small(16)
+    ppo = config.ppo.model_copy(update={"learning_rate": 1e-2, "epochs": 4, "final_failure": 10.0})
+    reward = config.env.reward.model_copy(update={"failure": 10.0})
+    env = config.env.model_copy(update={"reward": reward})
+    config = config.model_copy(update={"ppo": ppo, "env": env})
+    robots = FaithfulConfig(robots=32)
+    training = Faithful(
+        config, robots, SteeringEnv(config.env), ground.world, ground.scenes, Dizzy()
+    )
+    told = []
+    training.run(training.fresh_state(None), lambda state, metrics: told.append(metrics))
+    failures = [each["planner/failures_per_1000_steps"] for each in told]
+    assert failures[0] > 450
+    assert np.mean(failures[-3:]) < 0.85 * failures[0]

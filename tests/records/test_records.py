@@ -58,8 +58,8 @@ def test_a_training_that_begins_is_running_not_damaged(tmp_path: Path) -> None:
         ("config.yaml", "ppo: {steps: x}", "config cannot be understood"),
         ("provenance.json", "[]", "provenance cannot be understood"),
         ("provenance.json", '{"git": 3, "command": [], "created": 1}', "cannot be understood"),
-        ("metrics.jsonl", "nonsense\n", "metrics.jsonl cannot be read"),
-        ("metrics.jsonl", '{"step": "a", "seconds": []}\n', "metrics cannot be understood"),
+        ("metrics.jsonl", "nonsense\n", "line 1 is not valid JSON"),
+        ("metrics.jsonl", '{"step": "a", "seconds": []}\n', "metrics.jsonl is damaged: line 1"),
         ("evaluation/hole.json", "{}", "is not an evaluation"),
     ],
 )

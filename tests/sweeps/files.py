@@ -23,5 +23,7 @@ def write_population(folder: Path, **changes) -> Path:
     """Write a tiny run configuration and a population of it; return the population's file."""
     (folder / "tiny.yaml").write_text(yaml.safe_dump(TINY))
     path = folder / "population.yaml"
-    path.write_text(yaml.safe_dump({"config": "tiny.yaml", "seeds": [0, 1]} | changes, sort_keys=False))
+    path.write_text(
+        yaml.safe_dump({"config": "tiny.yaml", "seeds": [0, 1]} | changes, sort_keys=False)
+    )
     return path

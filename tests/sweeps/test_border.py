@@ -18,50 +18,79 @@ LINEAR = {"low": 0.1, "high": 0.2}
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"space": {"ppo.learning_rte": LINEAR}}, "there is no ppo.learning_rte; perhaps you meant ppo.learning_rate"),
+        (
+            {"space": {"ppo.learning_rte": LINEAR}},
+            "there is no ppo.learning_rte; perhaps you meant ppo.learning_rate",
+        ),
         ({"space": {"ppo": LINEAR}}, "ppo is a section: give a field of it, such as ppo.steps"),
         ({"space": {}}, "space is empty"),
-        ({"space": {RATE: {"low": 2e-3, "high": 1e-3}}}, "space.ppo.learning_rate: low = 0.002 is above high = 0.001"),
+        (
+            {"space": {RATE: {"low": 2e-3, "high": 1e-3}}},
+            "space.ppo.learning_rate: low = 0.002 is above high = 0.001",
+        ),
         ({"space": {RATE: {"low": 1e-3, "high": 1e-3}}}, "the range is empty"),
         ({"space": {RATE: {"low": 0.0, "high": 1e-3, "log": True}}}, "log needs numbers above 0"),
-        ({"space": {RATE: {"low": -1.0, "high": 1e-3}}}, "ppo.learning_rate is -1.0, but it should be greater than 0"),
+        (
+            {"space": {RATE: {"low": -1.0, "high": 1e-3}}},
+            "ppo.learning_rate is -1.0, but it should be greater than 0",
+        ),
         ({"space": {RATE: {"low": 1e-3}}}, "give low and high, or choices"),
         ({"space": {RATE: {"choices": []}}}, "choices is empty"),
         ({"space": {RATE: {"choices": [0.1, 0.1]}}}, "choices names 0.1 twice"),
         ({"space": {RATE: {"choices": [0.1, "fast"]}}}, "ppo.learning_rate is 'fast', but"),
         ({"space": {RATE: {"choices": [0.1], "log": True}}}, "choices go without"),
         ({"space": {RATE: {"lo": 0.1, "high": 0.2}}}, "space.ppo.learning_rate.lo"),
-        ({"space": {"ppo.epochs": {"low": 1.5, "high": 3}}}, "low = 1.5, but ppo.epochs holds whole numbers"),
+        (
+            {"space": {"ppo.epochs": {"low": 1.5, "high": 3}}},
+            "low = 1.5, but ppo.epochs holds whole numbers",
+        ),
         ({"space": {"ppo.mirror": {"low": 0, "high": 1}}}, "ppo.mirror is no single number"),
         ({"space": {"network.hidden": {"choices": [[16], [0]]}}}, "network.hidden"),
         ({"space": {"seed": {"choices": [1, 2]}}}, "training seeds are listed under seeds"),
         ({"space": {"held_out.starts": {"low": 1, "high": 9}}}, "belongs to what measures"),
-        ({"space": {RATE: LINEAR | {"only_when": {"ppo.mirror": True}}}}, "ppo.mirror does not stand above"),
         (
-            {"space": {"ppo.mirror": {"choices": [True]}, RATE: LINEAR | {"only_when": {"ppo.mirror": False}}}},
+            {"space": {RATE: LINEAR | {"only_when": {"ppo.mirror": True}}}},
+            "ppo.mirror does not stand above",
+        ),
+        (
+            {
+                "space": {
+                    "ppo.mirror": {"choices": [True]},
+                    RATE: LINEAR | {"only_when": {"ppo.mirror": False}},
+                }
+            },
             "ppo.mirror is never False",
         ),
         ({"set": {"ppo.stepz": 3}}, "set: there is no ppo.stepz"),
         ({"set": {"ppo.steps": -3}}, "ppo.steps is -3"),
         ({"objectives": [{"measure": "speed"}]}, "'held_out'"),
         ({"objectives": []}, "objectives is empty"),
-        ({"objectives": [{"measure": "held_out"}] * 2}, "objectives measures held_out twice"),
+        (
+            {"objectives": [{"measure": "held_out"}, {"measure": "held_out"}]},
+            "objectives measures held_out twice",
+        ),
         ({"objectives": [{"measure": "steps_to_success", "success": 1.5}]}, "success is 1.5"),
         ({"objectives": [{"measure": "exact", "suites": ["stairs"]}]}, "objectives.0"),
         ({"objectives": [{"measure": "exact", "parameters": {"sample": 3}}]}, "objectives.0"),
         (
-            {"pruner": "median", "objectives": [{"measure": "held_out"}, {"measure": "steps_to_success"}]},
+            {
+                "pruner": "median",
+                "objectives": [{"measure": "held_out"}, {"measure": "steps_to_success"}],
+            },
             "pruner = median needs a single objective",
         ),
         ({"seeds": [0, 1, 0]}, "seeds names 0 twice"),
         ({"seeds": []}, "seeds is empty"),
         ({"trials": 0}, "trials is 0"),
         ({"vectorised": True, "pruner": "median"}, "vectorised is true, but pruner = median"),
-        ({"vectorised": True, "space": {"ppo.epochs": {"low": 1, "high": 3}}}, "space.ppo.epochs is another program"),
+        (
+            {"vectorised": True, "space": {"ppo.epochs": {"low": 1, "high": 3}}},
+            "space.ppo.epochs is another program",
+        ),
         ({"vectorised": True, "objectives": [{"measure": "seconds_to_success"}]}, "train alone"),
         ({"config": "nothing.yaml"}, "nothing.yaml does not exist"),
     ],
-)  # fmt: skip
+)
 def test_what_a_sweep_cannot_mean_is_refused(tmp_path, changes, said):
     path = write_sweep(tmp_path, **changes)
     with pytest.raises(InputError) as refusal:

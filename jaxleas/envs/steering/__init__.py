@@ -10,7 +10,7 @@ from jaxleas.envs.steering.layout import (
     layout_named,
 )
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, restart_where, take
+from jaxleas.envs.steering.starts import draw_picks, draw_starts, restart_where, take
 from jaxleas.envs.steering.state import Outcome, Plan, SteeringState
 from jaxleas.envs.steering.world import World, make_world
 
@@ -28,6 +28,7 @@ __all__ = [
     "SteeringEnv",
     "SteeringState",
     "World",
+    "draw_picks",
     "draw_starts",
     "layout_named",
     "make_world",
