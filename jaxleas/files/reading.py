@@ -1,9 +1,11 @@
 """Reading: every failure is an InputError that names the file, the key and what would do."""
 
+import difflib
 import json
 import struct
 import zipfile
 import zlib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +40,7 @@ def read_json(path: str | Path) -> Any:
     text = _bytes(path).decode("utf-8", errors="replace")
     try:
         return json.loads(text, parse_constant=lambda name: _refuse_constant(path, name))
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # ValueError: also numbers of 5000 digits
         raise InputError(f"{path} is not valid JSON: {error}") from error
 
 
@@ -87,3 +89,15 @@ def _require_file(path: str | Path) -> None:
 
 def _refuse_constant(path: str | Path, name: str) -> None:
     raise InputError(f"{path} holds {name}, which is neither JSON nor a usable number")
+
+
+def refuse_misspelt_keys(where: str | Path, keys: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse a key that looks like a known one; others, a comment say, are let pass.
+
+    Raises:
+        InputError: says which key, and which was probably meant.
+    """
+    for key in keys:
+        nearest = difflib.get_close_matches(key, known, n=1, cutoff=0.75)
+        if nearest and nearest[0] != key:
+            raise InputError(f"{where}: unknown key '{key}'; did you mean '{nearest[0]}'?")

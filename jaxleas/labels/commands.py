@@ -31,7 +31,7 @@ def label(
 
     Args:
         guides: guide path files, .npz.
-        scene: that they walk on, .json.
+        scene: that they walk on, .json; or an .stl or .obj mesh in metres, z up.
         out: folder of the verdict files; the same command goes on where it was interrupted.
         planner: that judges.
         keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
