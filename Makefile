@@ -5,11 +5,12 @@ BIN := $(VENV)/bin
 CONFIG ?= configs/leas_p1.yaml
 RUN_DIR ?= runs/leas_p1
 BENCH ?=
+WORKERS ?= 2
 # What only the tests need is not installed to train: two locked lists, two stamps.
 RUN_STAMP := $(VENV)/.run-installed
 DEV_STAMP := $(VENV)/.dev-installed
 
-.PHONY: train test test-all lint bench lock clean
+.PHONY: train test test-all lint bench docs lock clean
 
 train: $(RUN_STAMP)
 	@if [ -e $(RUN_DIR)/config.yaml ]; then \
@@ -19,12 +20,15 @@ train: $(RUN_STAMP)
 	  $(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR); \
 	fi
 
+# Files of tests are dealt out to WORKERS processes: fixtures that train are made once a file.
+PYTEST = $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile
+
 # Slow tests guard headline claims: `make test-all` runs them, and so does `make test` in CI.
 test: $(DEV_STAMP)
-	$(BIN)/python -m pytest $(if $(filter true 1,$(CI)),,-m "not slow")
+	$(PYTEST) $(if $(filter true 1,$(CI)),,-m "not slow")
 
 test-all: $(DEV_STAMP)
-	$(BIN)/python -m pytest
+	$(PYTEST)
 
 lint: $(DEV_STAMP)
 	$(BIN)/ruff check .
@@ -33,6 +37,11 @@ lint: $(DEV_STAMP)
 
 bench: $(DEV_STAMP)
 	$(BIN)/python -m benchmarks $(BENCH)
+
+# The documentation site, build/site; broken links fail, and so does whatever a page would fetch.
+docs: $(DEV_STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	$(BIN)/python scripts/check_site.py build/site
 
 # Locked for every platform and Python at once; the lists name no registry.
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 \

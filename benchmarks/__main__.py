@@ -107,7 +107,8 @@ def _require_device(device: str | None) -> None:
     from jaxleas.types.errors import InputError
 
     try:
-        jax.devices()
+        # By name: asked for its devices alone, JAX falls back to the processor without a word.
+        jax.devices(device)
     except (AssertionError, RuntimeError) as error:  # jax asserts where a plugin is missing
         raise InputError(
             f"--device {device}: JAX finds no such device here; --device cpu always works"

@@ -48,12 +48,25 @@ COMMANDS = {
         "distill",
         "train a policy that knows its planner",
     ),
+    "sweep": ("jaxleas.sweeps.commands", "sweep", "search a space of configurations"),
+    "population": (
+        "jaxleas.sweeps.commands",
+        "population",
+        "train several policies in one program",
+    ),
     "view": (
         "jaxleas.viewer.commands",
         "view",
         "drive policies and play back paths in the browser",
     ),
-    "report": ("jaxleas.evaluation.commands", "report", "write a run's report as one HTML file"),
+    "figures": (
+        "jaxleas.evaluation.figures_command",
+        "figures",
+        "measure what the thesis's figures show",
+    ),
+    "runs": ("jaxleas.records.commands", "runs", "list runs: state, success, configuration"),
+    "compare": ("jaxleas.records.commands", "compare", "put runs side by side"),
+    "report": ("jaxleas.distillation.commands", "report", "write a run's report as one HTML file"),
 }
 
 

@@ -11,8 +11,9 @@ from typing import Any
 def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -> None:
     """Add what `function` takes to `parser`.
 
-    The first parameter, if it may be given by position and has no default, becomes a positional
-    argument; every other parameter an option `--its-name`, required if it has no default.
+    The first parameter, if it may be given by position and has no default, or if all others are
+    keyword-only, becomes a positional argument; every other parameter an option `--its-name`,
+    required if it has no default.
 
     Args:
         parser: gets the options, and its description from the docstring's first line.
@@ -23,12 +24,20 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
     parser.description = text.partition("\n\n")[0]
     helps = _argument_helps(text)
     hints = typing.get_type_hints(function)
-    for index, parameter in enumerate(inspect.signature(function).parameters.values()):
+    parameters = list(inspect.signature(function).parameters.values())
+    alone = all(each.kind is each.KEYWORD_ONLY for each in parameters[1:])
+    for index, parameter in enumerate(parameters):
         name = parameter.name
         options = _options_of_type(hints.get(name, str))
         required = parameter.default is parameter.empty
         options["help"] = helps.get(name, "").replace("%", "%%")
-        if index == 0 and required and parameter.kind is not parameter.KEYWORD_ONLY:
+        positional = index == 0 and parameter.kind is not parameter.KEYWORD_ONLY
+        if positional and required:
+            parser.add_argument(name, metavar=name.upper(), **options)
+            continue
+        if positional and alone:
+            options["help"] += f" [{parameter.default}]".replace("%", "%%")
+            options |= {"nargs": "?", "default": parameter.default}
             parser.add_argument(name, metavar=name.upper(), **options)
             continue
         if not required:

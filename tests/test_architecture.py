@@ -14,7 +14,8 @@ ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "files", "geometry", "robots", "terrain", "conditions", "envs", "training"),
     *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation"),
-    *("distillation", "export", "viewer", "cli_guard", "cli_options", "cli"),
+    *("distillation", "sweeps", "records", "export", "viewer"),
+    *("cli_guard", "cli_options", "cli"),
 )
 # What keeps the loop of data open: these may not, although the order would let them.
 FORBIDDEN = {"contacts": {"envs", "training", "guide"}, "surrogates": {"labels"}}

@@ -16,7 +16,6 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
-from jaxleas.robots.catalogue import ROBOTS
 from jaxleas.terrain import write_height_map
 from jaxleas.training.config import RunConfig
 from jaxleas.training.configuration import load_config, to_yaml
@@ -29,7 +28,7 @@ from tests.training.runs import tiny
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
-FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^```(\w*)(?: [^\n]*)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUNS = re.compile(r"^<!-- (runs.*?) -->\n```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -84,13 +83,19 @@ ALL_COMMANDS = sorted({(page, line) for page in PAGES for line in commands(page)
 @pytest.mark.parametrize(("page", "line"), ALL_COMMANDS, ids=name_of)
 def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
     words = shlex.split(line, comments=True)
+    while re.fullmatch(r"[A-Z_]+=.*", words[0]):  # variables of the environment
+        words.pop(0)
     match words:
         case ["jaxleas", *arguments]:
             assert parse_jaxleas(arguments, monkeypatch), line
         case ["python", "train.py", *arguments]:
             parse_train(arguments, monkeypatch)
+        case ["python", "-m", "venv", *_]:
+            pass
         case ["python", "-m", module, *arguments]:
-            source = (ROOT / module.replace(".", "/") / "__main__.py").read_text(encoding="utf-8")
+            file = ROOT / module.replace(".", "/")
+            file = file / "__main__.py" if file.is_dir() else file.with_suffix(".py")
+            source = file.read_text(encoding="utf-8")
             for option in (each for each in arguments if each.startswith("--")):
                 assert f'"{option}"' in source, f"{module} has no {option}"
         case ["python", script, *arguments]:
@@ -99,7 +104,7 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
                 assert f'"{option}"' in source, f"{script} has no {option}"
         case ["make", target, *variables]:
             require_make(target, variables)
-        case ["source", ".venv/bin/activate"]:
+        case ["source", ".venv/bin/activate"] | ["pip", "install", *_] | ["git", "clone", *_]:
             pass
         case _:
             pytest.fail(f"{page.name}: this test does not know how to read {line!r}")
@@ -205,11 +210,10 @@ def test_the_readme_example_walks(workplace: Path, capsys) -> None:
     )
 
 
-def test_the_examples_for_your_own_run(workplace: Path, monkeypatch) -> None:
-    monkeypatch.setattr("jaxleas.robots.catalogue.ROBOTS", {**ROBOTS})
+def test_the_examples_for_your_own_run(workplace: Path) -> None:
     names = execute("docs/your_own.md")
     assert (workplace / "stairs.npz").is_file()
-    assert (workplace / "walker.json").is_file()
+    assert (workplace / "robots/walker.json").is_file()
     require_level_means_level(names["env"])
 
 
@@ -224,8 +228,7 @@ def require_level_means_level(env) -> None:
 
 
 @pytest.mark.slow
-def test_the_training_example_trains(workplace: Path, brax_ranks, monkeypatch) -> None:
-    monkeypatch.setattr("jaxleas.robots.catalogue.ROBOTS", {**ROBOTS})
+def test_the_training_example_trains(workplace: Path, brax_ranks) -> None:
     execute("docs/your_own.md", slow=True)
     assert (workplace / "level_policy.npz").is_file()
 

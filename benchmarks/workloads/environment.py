@@ -15,7 +15,7 @@ from benchmarks.workloads.workload import Workload
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, restart_where, take
+from jaxleas.envs.steering.starts import draw_picks, draw_starts, restart_where, take
 from jaxleas.envs.steering.world import World
 from jaxleas.training.worlds import training_world
 
@@ -81,16 +81,16 @@ def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
 
         def advance(carry, inputs):
             episode, _ = carry
-            action, key_now = inputs
-            after, outcome = env.step(world.atlas, weights, episode, action)
-            if pool is None:
-                return (after, outcome.observation), outcome.reward
-            done = outcome.terminated | outcome.truncated
-            return restart_where(done, after, outcome.observation, pool, key_now), outcome.reward
+            action, pick = inputs
+            episode, verdict = env.advance(world.atlas, weights, episode, action)
+            if pool is not None:
+                done = verdict.terminated | verdict.truncated
+                episode = restart_where(done, episode, pool, pick)
+            return (episode, env.look(world.atlas, episode)), verdict.reward
 
-        keys = jax.random.split(restart_key, unroll)
+        picks = draw_picks(pool, restart_key, shape[:2]) if pool else None
         (episode, observation), reward = jax.lax.scan(
-            advance, (episode, observation), (actions, keys)
+            advance, (episode, observation), (actions, picks)
         )
         return (episode, observation, key), reward.sum()
 

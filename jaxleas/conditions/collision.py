@@ -34,12 +34,7 @@ def collision(robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0
     """
     if not 0.0 <= padding < np.inf:
         raise InputError(f"collision padding must be zero or more metres, got {padding}")
-    bottoms = np.full(len(points), np.inf)
-    for box in robot.trunk:
-        low, high = np.asarray(box.low[:2]), np.asarray(box.high[:2])
-        enlarged = padding + _TOLERANCE
-        under = np.all((points >= low - enlarged) & (points <= high + enlarged), axis=-1)
-        bottoms[under] = np.minimum(bottoms[under], box.low[2])
+    bottoms = trunk_bottoms(robot, points, padding)
     under_trunk = [
         (int(index), float(bottoms[index])) for index in np.flatnonzero(bottoms < np.inf)
     ]
@@ -58,3 +53,16 @@ def collision(robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0
         return jnp.clip(reduce(jnp.minimum, margins), -MARGIN_LIMIT, MARGIN_LIMIT)
 
     return judge
+
+
+def trunk_bottoms(
+    robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0.0
+) -> Float[np.ndarray, " P"]:
+    """Return the underside of the lowest trunk box over each point [m], infinity where none is."""
+    bottoms = np.full(len(points), np.inf)
+    for box in robot.trunk:
+        low, high = np.asarray(box.low[:2]), np.asarray(box.high[:2])
+        enlarged = padding + _TOLERANCE
+        under = np.all((points >= low - enlarged) & (points <= high + enlarged), axis=-1)
+        bottoms[under] = np.minimum(bottoms[under], box.low[2])
+    return bottoms

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jaxleas.files import read_npz
+from jaxleas.files import read_npz, require_version_array
 from jaxleas.types import GuidePath, InputError
 
 NEEDED = ("time", "position", "yaw", "velocity", "valid")
@@ -21,6 +21,7 @@ def read_guide_path(path: str | Path, query: int = 0) -> GuidePath:
         InputError: the file cannot be used, or has no such path.
     """
     arrays = read_npz(path, NEEDED)
+    require_version_array(arrays, 1, path)
     rows = len(arrays["time"]) if arrays["time"].ndim == 1 else 0
     owner = arrays.get("query", np.zeros(rows, np.int64))
     for name in (*NEEDED, "query"):

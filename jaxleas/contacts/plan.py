@@ -8,10 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
-from jaxleas.files import read_json, write_json
+from jaxleas.files import read_json, require_version, write_json
 from jaxleas.types.errors import InputError
 
 Status = Literal["feasible", "infeasible", "time_limit", "not_found"]
+VERSION = 1
 STATUSES: tuple[Status, ...] = ("feasible", "infeasible", "time_limit", "not_found")
 
 
@@ -67,7 +68,7 @@ def write_plan(path: str | Path, plan: ContactPlan) -> None:
     write_json(
         path,
         {
-            "version": 1,
+            "version": VERSION,
             "planner": plan.planner,
             "feasible": plan.feasible,
             "status": plan.status,
@@ -97,6 +98,7 @@ def read_plan(path: str | Path) -> ContactPlan:
     needed = ("planner", "feasible", "status", "surfaces", "footholds")
     if not isinstance(content, dict) or not all(key in content for key in needed):
         raise InputError(f"{path} is not a contact plan: it needs the keys {', '.join(needed)}")
+    require_version(content, VERSION, path)
     if content["status"] not in STATUSES or not isinstance(content["feasible"], bool):
         raise InputError(
             f"{path}: status must be one of {', '.join(STATUSES)} and feasible true or false"
@@ -106,6 +108,8 @@ def read_plan(path: str | Path) -> ContactPlan:
         raise InputError(f"{path}: surfaces must be a list of surface names, one a phase")
     com, postures = content.get("com"), content.get("postures")
     certificate = content.get("certificate") or {}
+    if not isinstance(certificate, dict):
+        raise InputError(f"{path}: certificate must be an object with max_violation_m, or null")
     return ContactPlan(
         planner=str(content["planner"]),
         feasible=content["feasible"],
@@ -114,15 +118,31 @@ def read_plan(path: str | Path) -> ContactPlan:
         surfaces=tuple(surfaces),
         footholds=_numbers(path, "footholds", content["footholds"], (len(surfaces), 3)),
         com=None if com is None else _numbers(path, "com", com, (len(surfaces), 2, 3)),
-        last_feasible_phase=content.get("last_feasible_phase"),
-        max_violation=certificate.get("max_violation_m"),
-        seconds=float(content.get("seconds") or 0.0),
-        combinations=content.get("combinations"),
-        undecided=content.get("undecided"),
+        last_feasible_phase=_count(path, content, "last_feasible_phase"),
+        max_violation=_number(path, certificate, "max_violation_m"),
+        seconds=_number(path, content, "seconds") or 0.0,
+        combinations=_count(path, content, "combinations"),
+        undecided=_count(path, content, "undecided"),
         robustness=_robustness(path, content.get("robustness")),
         postures=None if postures is None else _postures(path, postures),
-        gap=float(content.get("gap") or 0.0),
+        gap=_number(path, content, "gap") or 0.0,
     )
+
+
+def _number(path: str | Path, content: dict[str, Any], key: str) -> float | None:
+    value = content.get(key)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{path}: {key} must be a number, or null, not {value!r:.60}")
+    return float(value)
+
+
+def _count(path: str | Path, content: dict[str, Any], key: str) -> int | None:
+    value = content.get(key)
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise InputError(f"{path}: {key} must be a whole number, or null, not {value!r:.60}")
+    return value
 
 
 def _postures(path: str | Path, content: Any) -> tuple[Posture, ...]:

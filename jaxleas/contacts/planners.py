@@ -17,6 +17,7 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.prefix import last_feasible_phase
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sl1m import MAX_COMBINATIONS, Attempt, attempt
+from jaxleas.contacts.slack_weights import SlackWeights
 from jaxleas.types.errors import InputError
 
 Cost = Literal["none", "linear", "quadratic"]
@@ -76,6 +77,7 @@ def plan_sl1m(
     problem: ContactProblem,
     *,
     max_combinations: int = MAX_COMBINATIONS,
+    weights: SlackWeights = "uniform",
     time_limit: float = math.inf,
     diagnose: bool = True,
     pruning: bool = True,
@@ -84,21 +86,23 @@ def plan_sl1m(
 
     Args:
         problem: the contact problem.
-        max_combinations: of surfaces for the undecided phases, tried one after the other.
+        max_combinations: of surfaces for the undecided phases, tried one after the other; 0: none
+            (the thesis's SL1M without heuristics), which plans where every phase is decided.
+        weights: of the slacks: "uniform", as published, or "guide": the guide path chooses.
         time_limit: [s]; when it is over, the plan's status says "time_limit".
         diagnose: when there is no plan, find the last phase for which SL1M has one.
         pruning: whether candidates that no step can reach are dropped first.
 
     Raises:
-        InputError: max_combinations is not positive.
+        InputError: max_combinations is negative.
         PlannerError: a bug of ours.
     """
     require_time_limit(time_limit)
-    if max_combinations < 1:
-        raise InputError(f"max_combinations is {max_combinations}; at least 1 must be tried")
+    if max_combinations < 0:
+        raise InputError(f"max_combinations is {max_combinations}; give 0 or more")
     begin = time.perf_counter()
     deadline = begin + time_limit
-    found = attempt(problem, deadline, max_combinations, pruning)
+    found = attempt(problem, deadline, max_combinations, pruning, weights)
     seconds = time.perf_counter() - begin
     counts = {"combinations": found.combinations, "undecided": found.undecided}
     if found.placement is not None:
@@ -112,7 +116,10 @@ def plan_sl1m(
     plan = ContactPlan("sl1m", False, status, _sl1m_reason(found), seconds=seconds).but(**counts)
     if not diagnose:
         return plan
-    judge = lambda prefix: attempt(prefix, deadline, max_combinations, pruning).outcome  # noqa: E731
+
+    def judge(prefix: ContactProblem) -> str:
+        return attempt(prefix, deadline, max_combinations, pruning, weights).outcome
+
     plan = _diagnosed(plan, problem, judge, None, deadline, exact=status == "infeasible")
     return plan.but(seconds=time.perf_counter() - begin)
 

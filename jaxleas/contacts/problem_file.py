@@ -9,7 +9,7 @@ import numpy as np
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.files import read_json, refuse_misspelt_keys, write_json
+from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
 from jaxleas.types.errors import InputError
 
@@ -47,9 +47,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
     if missing:
         raise InputError(f"{where} is not a contact problem: it lacks {', '.join(missing)}")
     refuse_misspelt_keys(where, content, KNOWN)
-    version = content.get("version", VERSION)
-    if isinstance(version, bool) or version != VERSION:
-        raise InputError(f"{where} has version {version!r:.60}; this package reads {VERSION}")
+    require_version(content, VERSION, where)
     if not isinstance(content["robot"], str):
         raise InputError(f"{where}: robot must be a name, 'talos', not {content['robot']!r:.60}")
     model = content["model"]

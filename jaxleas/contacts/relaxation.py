@@ -10,6 +10,7 @@ from jaxleas.contacts.linear_program import Outcome, Program, Rows, solve
 from jaxleas.contacts.mixed_integer import Candidates, add_step
 from jaxleas.contacts.placement import put_com
 from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.slack_weights import SlackWeights, slack_weights
 from jaxleas.contacts.steps import Step
 
 
@@ -31,22 +32,29 @@ class Relaxed:
 
 
 def relax(
-    problem: ContactProblem, steps: list[Step], candidates: Candidates, deadline: float = np.inf
+    problem: ContactProblem,
+    steps: list[Step],
+    candidates: Candidates,
+    deadline: float = np.inf,
+    weights: SlackWeights = "uniform",
 ) -> Relaxed:
-    """Minimise the sum of all slacks over footholds that the steps allow.
+    """Minimise the weighted sum of all slacks over footholds that the steps allow.
 
-    min sum_kj a_kj  s.t.  S_j p_k <= s_j + a_kj,  |d_j . p_k - e_j| <= a_kj,  a >= 0, and steps.
-    Rows have unit normals and there is no big-M, so that a slack is a distance in metres. Where
-    the footholds leave no place for the centre of mass, cuts are returned, but the program is not
-    solved again: `place` keeps every constraint, and a second solution decided no more.
+    min sum_kj w_kj a_kj  s.t.  S_j p_k <= s_j + a_kj,  |d_j . p_k - e_j| <= a_kj,  a >= 0, and
+    steps. Rows have unit normals and there is no big-M, so that a slack is a distance in metres.
+    Where the footholds leave no place for the centre of mass, cuts are returned, but the program is
+    not solved again: `place` keeps every constraint, and a second solution decided no more.
 
     Args:
         problem: the contact problem.
         steps: of its phases, with cuts.
         candidates: of each phase; a single one is a hard constraint.
         deadline: of `time.perf_counter` [s].
+        weights: of the slacks, see `slack_weights`.
     """
-    program, starts = _assemble(problem, steps, candidates)
+    program, starts = _assemble(
+        problem, steps, candidates, slack_weights(problem, candidates, weights)
+    )
     solution = solve(program, deadline - time.perf_counter())
     if solution.outcome != "optimal":
         return Relaxed(solution.outcome, steps)
@@ -60,7 +68,10 @@ def relax(
 
 
 def _assemble(
-    problem: ContactProblem, steps: list[Step], candidates: Candidates
+    problem: ContactProblem,
+    steps: list[Step],
+    candidates: Candidates,
+    weights: list[Float[np.ndarray, " c"]],
 ) -> tuple[Program, np.ndarray]:
     slacks = [len(names) if len(names) > 1 else 0 for names in candidates]
     starts = np.cumsum([0, *(3 + each for each in slacks)])
@@ -70,7 +81,7 @@ def _assemble(
     for index, (step, names) in enumerate(zip(steps, candidates, strict=True)):
         begin = int(starts[index])
         alpha = begin + 3 + np.arange(slacks[index])
-        cost[alpha], low[alpha] = 1.0, 0.0
+        cost[alpha], low[alpha] = weights[index][: len(alpha)], 0.0
         for number, name in enumerate(names):
             surface = problem.surfaces[name]
             A = np.concatenate([surface.edge_normals, surface.normal[None], -surface.normal[None]])

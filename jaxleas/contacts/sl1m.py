@@ -12,6 +12,7 @@ from jaxleas.contacts.placement import Placement, place
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.pruning import prune
 from jaxleas.contacts.relaxation import Relaxed, relax
+from jaxleas.contacts.slack_weights import SlackWeights
 from jaxleas.contacts.steps import Step, make_steps
 
 DECIDED = 1e-6
@@ -49,6 +50,7 @@ def attempt(
     deadline: float = np.inf,
     max_combinations: int = MAX_COMBINATIONS,
     pruning: bool = True,
+    weights: SlackWeights = "uniform",
 ) -> Attempt:
     """Look for a plan by SL1M.
 
@@ -57,6 +59,7 @@ def attempt(
         deadline: of `time.perf_counter` [s].
         max_combinations: after which it gives up.
         pruning: whether candidates that no step can reach are dropped first.
+        weights: of the slacks.
     """
     steps = with_first_cuts(problem, make_steps(problem), len(problem))
     candidates: Candidates = [phase.candidates for phase in problem.phases]
@@ -64,7 +67,7 @@ def attempt(
         candidates = prune(problem, steps)
         if not all(candidates):
             return Attempt("infeasible", steps)
-    return search(problem, steps, candidates, deadline, max_combinations)
+    return search(problem, steps, candidates, deadline, max_combinations, weights)
 
 
 def search(
@@ -73,6 +76,7 @@ def search(
     candidates: Candidates,
     deadline: float,
     max_combinations: int,
+    weights: SlackWeights = "uniform",
 ) -> Attempt:
     """Relax, take the nearest surfaces, then others by cost where a failure says so.
 
@@ -81,17 +85,19 @@ def search(
         steps: of its phases, with cuts.
         candidates: of each phase, at least one each.
         deadline: of `time.perf_counter` [s].
-        max_combinations: after which it gives up.
+        max_combinations: after which it gives up; 0: what the relaxation did not decide fails.
+        weights: of the slacks.
     """
-    relaxed = relax(problem, steps, candidates, deadline)
+    relaxed = relax(problem, steps, candidates, deadline, weights)
     if relaxed.outcome != "optimal":
         return Attempt(relaxed.outcome, steps=relaxed.steps, relaxed=relaxed)
     steps = relaxed.steps
     undecided = sum(float(slack.min()) > DECIDED for slack in relaxed.slack)
+    most = max_combinations if undecided else max(1, max_combinations)
     tried, outcome = 0, "not_found"
     combinations = Combinations(candidates, relaxed.slack)
     for surfaces in combinations:
-        if tried == max_combinations:
+        if tried == most:
             break
         tried += 1
         placement = place(problem, steps, surfaces, deadline)

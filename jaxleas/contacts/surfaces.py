@@ -10,6 +10,7 @@ from scipy.spatial import ConvexHull
 from jaxleas.terrain.polygons import (
     MIN_AREA,
     polygon_area_vector,
+    require_few,
     require_planar_and_convex,
 )
 from jaxleas.types.errors import InputError
@@ -90,6 +91,7 @@ def require_polygon(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
     """Refuse what is not a planar convex polygon; unlike on a terrain, either winding will do."""
     if len(vertices) < 3:
         raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
+    require_few(vertices, where)
     if not np.isfinite(vertices).all():
         raise InputError(f"{where} has a coordinate that is not a finite number")
     if np.linalg.norm(polygon_area_vector(vertices)) < MIN_AREA:

@@ -1,4 +1,4 @@
-"""The function behind `jaxleas distill`."""
+"""The functions behind `jaxleas distill` and `jaxleas report`."""
 
 from pathlib import Path
 
@@ -10,6 +10,7 @@ def distill(
     *,
     out: Path,
     start: Path | None = None,
+    planner: str | None = None,
     processes: int | None = None,
 ) -> None:
     """Refine a policy and a surrogate in turn, judged by the exact contact planner.
@@ -18,6 +19,7 @@ def distill(
         config: of the distillation, YAML.
         out: folder to work in; the same command goes on where it was interrupted.
         start: run folder of the policy to begin with; by default one is trained first.
+        planner: of your own, MODULE:CLASS, said again: a file alone cannot make code run.
         processes: that ask the planner; all cores by default.
     """
     import os
@@ -27,6 +29,8 @@ def distill(
     from jaxleas.distillation.folder import DistillationFolder
     from jaxleas.distillation.opening import open_folder, train_start
     from jaxleas.distillation.table import table_of
+    from jaxleas.files import FolderLock
+    from jaxleas.labels.own_planner import require_said
     from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.training.configuration import load_config
 
@@ -34,12 +38,42 @@ def distill(
         raise InputError(f"--processes is {processes}; give 1 or more")
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
-    settled = open_folder(folder, load_config(DistillationConfig, config), start)
-    run = train_start(folder, settled)
-    distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
-    results = distillation.run(_Teller())
+    asked = load_config(DistillationConfig, config)
+    require_said(config, asked.planner, planner)
+    settled = open_folder(folder, asked, start)
+    with FolderLock(folder.path, "the distillation", "give another --out"):
+        run = train_start(folder, settled)
+        distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
+        results = distillation.run(_Teller())
     print(table_of(results))
-    print(f"{folder.policy}: the best round's policy; {folder.surrogate}: its surrogate")
+    beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
+    print(f"{folder.policy}: the best round's policy{beside}")
+
+
+def report(run: Path, out: Path | None = None) -> Path:
+    """Write a run's report as one self-contained HTML file.
+
+    Of a training: suites that the run was not judged on yet are judged first. Of a distillation:
+    what its files hold; the report says what is missing, and which command makes it.
+
+    Args:
+        run: a run folder, or a distillation's folder.
+        out: where to write it; by default RUN/report.html.
+
+    Raises:
+        InputError: it is no such folder, or holds no policy, or no round, yet.
+    """
+    from jaxleas.distillation.report_data import is_distilled
+
+    if not is_distilled(Path(run)):
+        from jaxleas.evaluation.commands import report as report_training
+
+        return report_training(run, out)
+    from jaxleas.distillation.report import write_distilled_report
+
+    path = write_distilled_report(Path(run), out)
+    print(f"written: {path}")
+    return path
 
 
 class _Teller:

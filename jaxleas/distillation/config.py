@@ -12,6 +12,9 @@ Count = Annotated[int, Field(ge=1)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 
+Observation = Literal["thesis144", "thesis145", "icra81"]
+RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]
+
 
 class CollectConfig(Strict):
     """Which guide paths the exact planner is asked about."""
@@ -35,10 +38,30 @@ class PracticeConfig(Strict):
 
     steps: Count = 2_000_000
     """Environment steps a round."""
+    steps_before: Annotated[int, Field(ge=0)] = 0
+    """Environment steps before the first round, without surrogate: to get used to another reward,
+    speed or observation."""
     learning_rate: Positive = 2e-4
     final_learning_rate: NonNegative = 1e-5
     threshold: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     """The risk dial: 0 ends as many episodes as the planner would, more makes policies careful."""
+    observation: Observation | None = None
+    """Layout that the policy sees by; its own by default. One that adds to the policy's own starts
+    with weights of zero on what is new."""
+    desired_speed: Positive | None = None
+    """Speed towards the goal [m/s]; that of the policy's own training by default."""
+    reward: dict[RewardTerm, NonNegative] = Field(default_factory=dict)
+    """Weights of the reward that differ from those of the policy's own training (env.reward)."""
+
+
+class FaithfulConfig(Strict):
+    """Mode `faithful`: how walks and verdicts overlap."""
+
+    robots: Count = 128
+    """That walk a whole episode at once, a wave."""
+    ahead: Annotated[int, Field(ge=0)] = 1
+    """Waves that are walked while another is judged: 0 keeps the device waiting for the planner,
+    more make what is learned from older."""
 
 
 class JudgeConfig(Strict):
@@ -52,7 +75,10 @@ class JudgeConfig(Strict):
 class DistillationConfig(Strict):
     """One distillation: a policy and a surrogate, refined in turn against one exact planner."""
 
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling"
+    mode: Literal["surrogate", "faithful"] = "surrogate"
+    """Who ends episodes in practice: a surrogate of the planner, or the exact planner itself."""
+    planner: Annotated[str, Field(pattern=r"^(sampling|mip|sl1m|[\w.]+:\w+)$")] = "sampling"
+    """sampling, mip, sl1m, or MODULE:CLASS of one's own, which the command line must name, too."""
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""
     rounds: Count = 4
@@ -66,4 +92,5 @@ class DistillationConfig(Strict):
     collect: CollectConfig = CollectConfig()
     fit: FitSettings = FitSettings()
     practice: PracticeConfig = PracticeConfig()
+    faithful: FaithfulConfig = FaithfulConfig()
     judge: JudgeConfig = JudgeConfig()

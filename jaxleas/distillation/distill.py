@@ -11,12 +11,15 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from jaxleas.distillation.config import DistillationConfig
-from jaxleas.distillation.folder import DistillationFolder, RoundFolder
+from jaxleas.distillation.faithful import Faithful
+from jaxleas.distillation.faithful_practice import practise_faithfully
+from jaxleas.distillation.folder import DistillationFolder, RoundFolder, read_done
 from jaxleas.distillation.judging import exact_success, judge_round, summary
 from jaxleas.distillation.labelling import Ground, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.files import atomic_path, read_json, write_json
+from jaxleas.files import atomic_path, write_json
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
 from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import (
@@ -84,7 +87,7 @@ class Distillation:
         self.config, self.folder = config, folder
         self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
         self.start = start
-        self.run_config, self._learned = read_run(start)
+        self.run_config, self._learned = widen(*read_run(start), config.practice.observation)
         self.env = SteeringEnv(self.run_config.env)
         self.workers = ProcessWorkers(processes)
         self.judge = Judge(config.planner, self.settings, workers=self.workers)
@@ -113,6 +116,19 @@ class Distillation:
             height_high=env.height_high,
         )
 
+    def _begin(self, say: Say) -> tuple[SteeringPolicy, Learned]:
+        """Return the policy begun with, and what it has learned, practised without surrogate."""
+        policy = widen_policy(read_policy(f"{self.start}/{POLICY_FILE}"), self.env)
+        steps = self.config.practice.steps_before
+        if not steps:
+            return policy, self._learned
+        folder = self.folder.round(0)
+        if not folder.practised.is_file():
+            say("round 0: practice without surrogate")
+            config = practice_config(self.config, self.run_config, steps)
+            practise(folder, config, None, self._learned, 0.0)
+        return read_policy(folder.policy), read_run(folder.run)[1]
+
     def run(self, say: Say) -> list[RoundResult]:
         """Go on to the end; return the table of all rounds.
 
@@ -120,9 +136,9 @@ class Distillation:
             say: told, in words, what is done now.
         """
         try:
-            policy = read_policy(f"{self.start}/{POLICY_FILE}")
+            policy, learned = self._begin(say)
             results = [self._judge(0, policy, say, {}, None, 0)]
-            learned, surrogate = self._learned, None
+            surrogate = None
             for number in range(1, self.config.rounds + 1):
                 result, policy, learned, surrogate = self._round(
                     number, policy, learned, surrogate, say
@@ -144,9 +160,11 @@ class Distillation:
         learned: Learned,
         surrogate: Surrogate | None,
         say: Say,
-    ) -> tuple[RoundResult, SteeringPolicy, Learned, Surrogate]:
+    ) -> tuple[RoundResult, SteeringPolicy, Learned, Surrogate | None]:
         """Return the result of one round, and what the next begins with."""
         folder = self.folder.round(number)
+        if self.config.mode == "faithful":
+            return self._faithful_round(number, folder, learned, say)
         labelled = self._label(number, folder, policy, surrogate, say)
         begun = time.perf_counter()
         surrogate = self._fit(number, folder, say)
@@ -155,11 +173,32 @@ class Distillation:
             say(f"round {number}: practice")
             config = practice_config(self.config, self.run_config)
             practise(folder, config, surrogate, learned, self.config.practice.threshold)
-        seconds["practice"] = read_json(folder.practised)["seconds"]
-        policy = read_policy(folder.run / POLICY_FILE)
-        _, learned = read_run(folder.run)
+        seconds["practice"] = read_done(folder.practised, "seconds")["seconds"]
+        policy, (_, learned) = read_policy(folder.policy), read_run(folder.run)
         result = self._judge(number, policy, say, seconds, surrogate.report, labelled["guides"])
         return result, policy, learned, surrogate
+
+    def _faithful_round(
+        self, number: int, folder: RoundFolder, learned: Learned, say: Say
+    ) -> tuple[RoundResult, SteeringPolicy, Learned, None]:
+        """Return the same where the exact planner itself ends the episodes: no labels, no fit."""
+        if not folder.practised.is_file():
+            say(f"round {number}: practice, the exact planner in the loop")
+            config = practice_config(self.config, self.run_config)
+            ground = self.ground
+            training = Faithful(
+                config,
+                self.config.faithful,
+                SteeringEnv(config.env),
+                ground.world,
+                ground.scenes,
+                self.judge,
+            )
+            practise_faithfully(folder, training, learned)
+        seconds = {"practice": read_done(folder.practised, "seconds")["seconds"]}
+        policy = read_policy(folder.policy)
+        _, learned = read_run(folder.run)
+        return self._judge(number, policy, say, seconds, None, 0), policy, learned, None
 
     def _label(
         self,
@@ -182,7 +221,7 @@ class Distillation:
                 self.workers,
                 lambda done, total: say(f"round {number}: {done} of {total} guide paths judged"),
             )
-        return read_json(folder.labelled)
+        return read_done(folder.labelled, "guides", "seconds")
 
     def _fit(self, number: int, folder: RoundFolder, say: Say) -> Surrogate:
         if folder.surrogate.is_file():
@@ -236,9 +275,9 @@ class Distillation:
         write_json(self.folder.table, {"version": 1, "rounds": [asdict(each) for each in results]})
         best = max(results[1:], key=lambda result: (result.success, -result.round))
         source = self.folder.round(best.round)
-        for file, target in (
-            (source.run / POLICY_FILE, self.folder.policy),
-            (source.surrogate, self.folder.surrogate),
-        ):
+        files = {source.policy: self.folder.policy}
+        if self.config.mode == "surrogate":
+            files[source.surrogate] = self.folder.surrogate
+        for file, target in files.items():
             with atomic_path(target) as temporary:
                 shutil.copyfile(file, temporary)

@@ -5,6 +5,7 @@ start/                  run folder of the policy to begin with, where none was g
 round_<k>/labels/       scenes, guide paths and verdicts
 round_<k>/surrogate.npz fitted to the verdicts of all rounds so far
 round_<k>/run/          run folder of the policy's practice
+round_<k>/policy.npz    what practice ended with
 round_<k>/judged.json   the exact planner's verdicts on its policy; round_0 is the one begun with
 rounds.json             the table of all rounds
 policy.npz, surrogate.npz   of the best round
@@ -15,8 +16,25 @@ that was killed at any moment goes on from the stage it was in.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from jaxleas.files import read_json
+from jaxleas.types.errors import InputError
 
 CONFIG = "config.yaml"
+
+
+def read_done(path: Path, *keys: str) -> dict[str, Any]:
+    """Read what a stage wrote when it was done.
+
+    Raises:
+        InputError: a key is missing, or holds no number.
+    """
+    content = read_json(path)
+    for key in keys:
+        if not isinstance(content, dict) or type(content.get(key)) not in (int, float):
+            raise InputError(f"{path} does not say {key}, a number; without it, it is done again")
+    return content
 
 
 @dataclass(frozen=True)
@@ -44,6 +62,11 @@ class RoundFolder:
     def run(self) -> Path:
         """Run folder of the practice."""
         return self.path / "run"
+
+    @property
+    def policy(self) -> Path:
+        """What practice ended with."""
+        return self.path / "policy.npz"
 
     @property
     def practised(self) -> Path:

@@ -15,11 +15,14 @@ from jaxleas.training.config import NetworkConfig, RunConfig
 from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.loop import train
 from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.policy import policy_of, write_policy
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, fresh_networks
 
 
-def practice_config(config: DistillationConfig, start: RunConfig) -> RunConfig:
+def practice_config(
+    config: DistillationConfig, start: RunConfig, steps: int | None = None
+) -> RunConfig:
     """Return the configuration of a round's run.
 
     The networks are those of the policy begun with. Falling is as dear from the first step on as
@@ -28,27 +31,39 @@ def practice_config(config: DistillationConfig, start: RunConfig) -> RunConfig:
     Args:
         config: of the distillation.
         start: of the run begun with.
+        steps: of the environment; by default a round's.
     """
     changes = {
-        "steps": config.practice.steps,
+        "steps": steps or config.practice.steps,
         "learning_rate": config.practice.learning_rate,
         "final_learning_rate": config.practice.final_learning_rate,
     }
     ppo = start.ppo.model_copy(update=changes)
-    reward = start.env.reward.model_copy(update={"failure": start.ppo.final_failure})
-    env = start.env.model_copy(update={"reward": reward})
+    dear = {"failure": start.ppo.final_failure}
+    reward = start.env.reward.model_copy(update=dear | config.practice.reward)
+    if "failure" in config.practice.reward:
+        ppo = ppo.model_copy(update={"final_failure": reward.failure})
+    speed = config.practice.desired_speed or start.env.desired_speed
+    env = start.env.model_copy(update={"reward": reward, "desired_speed": speed})
     return start.model_copy(update={"ppo": ppo, "env": env})
 
 
 def practise(
-    folder: RoundFolder, config: RunConfig, surrogate: Surrogate, learned: Learned, threshold: float
+    folder: RoundFolder,
+    config: RunConfig,
+    surrogate: Surrogate | None,
+    learned: Learned,
+    threshold: float,
 ) -> None:
     """Train in the round's run folder; an interrupted practice is gone on with.
+
+    The policy is the average that the run ends with. (That of most successes on the way, which a
+    run folder keeps, is chosen by reachability, and here it is the planner that counts.)
 
     Args:
         folder: of the round.
         config: of the run.
-        surrogate: that ends episodes, beside reachability and collision.
+        surrogate: that ends episodes, beside reachability and collision, if any.
         learned: to begin with.
         threshold: the risk dial.
     """
@@ -57,13 +72,26 @@ def practise(
         run = RunFolder.open(folder.run, writing=True, needs_checkpoint=False)
     else:
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
-    foresight = SurrogateForesight(surrogate, threshold)
+    foresight = None if surrogate is None else SurrogateForesight(surrogate, threshold)
     with run:
         train(config, run, foresight=foresight, learned=learned)
-    seconds = round(time.perf_counter() - begun, 1)
-    write_json(
-        folder.practised, {"steps": config.ppo.updates * config.ppo.batch, "seconds": seconds}
-    )
+    conclude(folder, config, time.perf_counter() - begun)
+
+
+def conclude(folder: RoundFolder, config: RunConfig, seconds: float) -> None:
+    """Keep the average that a practice's run ended with as the round's policy.
+
+    Args:
+        folder: of the round.
+        config: of the run.
+        seconds: that the practice took.
+    """
+    _, after = read_run(folder.run)
+    env = SteeringEnv(config.env)
+    policy = policy_of(env, config.network.activation, after.normaliser, after.averaged)
+    write_policy(folder.policy, policy)
+    steps = config.ppo.updates * config.ppo.batch
+    write_json(folder.practised, {"steps": steps, "seconds": round(seconds, 1)})
 
 
 def read_run(path: str | Path) -> tuple[RunConfig, Learned]:

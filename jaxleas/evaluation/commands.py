@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, Literal
 
 from jaxleas.evaluation.comparison import compare, side_by_side_file
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
@@ -13,13 +14,14 @@ from jaxleas.evaluation.examination import (
     run_evaluations,
 )
 from jaxleas.evaluation.progress import Reporter
+from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, write_evaluation
 from jaxleas.evaluation.scene_pictures import draw_side_by_side
 from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.evaluation.table import plain_table
-from jaxleas.labels.settings import SETTINGS, require_settings, settings_from
+from jaxleas.labels.settings import SETTINGS, kind_of, require_settings, settings_from
 from jaxleas.types.errors import InputError
 
 
@@ -35,8 +37,12 @@ def evaluate(
     methods: Sequence[str] | None = None,
     policies: Sequence[str] | None = None,
     time_limit: float | None = None,
+    max_combinations: int | None = None,
+    slack_weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     pictures: Path | None = None,
+    surrogate: Path | None = None,
+    threshold: float | None = None,
 ) -> Evaluation:
     """Judge a policy on terrains it was never trained on, and print the table.
 
@@ -46,21 +52,28 @@ def evaluate(
 
     Args:
         run: a run folder, a policy.npz or an .onnx file.
-        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain or thesis.
+        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps or thesis.
         starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
         json: where to write the result as well; a run folder keeps the one of most starts in
             RUN/evaluation/.
         baseline: judge RB-Lin and RB-Kino beside it.
         seed: of scenes and starts; training never sees any of them.
         held_out: judge on terrain to choose and tune by, not on that of evaluation.
-        planners: sampling, mip, sl1m or none; all three for the suite thesis.
+        planners: sampling, mip, sl1m, MODULE:CLASS of your own, or none; the first three for the
+            suite thesis.
         methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
             policies; by default all.
         policies: further ones, each as name=path.
         time_limit: for one guide path, of mip and sl1m [s]; what is not decided by then counts as
             not planned.
+        max_combinations: of SL1M for what its relaxation leaves undecided; 0: SL1M without
+            heuristics.
+        slack_weights: of SL1M's slacks: uniform or guide.
         processes: that plan contacts at the same time; all cores by default.
         pictures: folder for pictures of the guide paths.
+        surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
+            they end early, as stopped. The result is kept in --json only.
+        threshold: least probability of success, by the surrogate, to go on with: the risk dial.
 
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
@@ -71,8 +84,9 @@ def evaluate(
     further = parse_policies(_words(policies) or ())
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
-    candidate = load_candidate(run)
-    folder = Path(run) if Path(run).is_dir() else None
+    refusal = load_refusal(surrogate, threshold, names)
+    candidate = load_candidate(run, refusal)
+    folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
             evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
@@ -83,6 +97,11 @@ def evaluate(
             write_evaluation(json, evaluation)
             print(f"written: {json}")
         return evaluation
+    given = {
+        "time_limit": time_limit,
+        "max_combinations": max_combinations,
+        "weights": slack_weights,
+    }
     contenders = make_contenders(candidate, further, _words(methods))
     file = json
     if file is None and folder is not None:
@@ -93,7 +112,7 @@ def evaluate(
             contenders,
             plan,
             names,
-            settings={name: settings_from(name, **_limit(name, time_limit)) for name in names},
+            settings={name: settings_from(name, **_given(name, given)) for name in names},
             processes=processes or os.cpu_count() or 1,
             file=file,
             say=reporter.say,
@@ -121,8 +140,9 @@ def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _limit(planner: str, time_limit: float | None) -> dict[str, float | None]:
-    return {"time_limit": time_limit} if "time_limit" in SETTINGS[planner].model_fields else {}
+def _given(planner: str, given: dict[str, Any]) -> dict[str, Any]:
+    """Return those of the settings that the planner has."""
+    return {name: each for name, each in given.items() if name in kind_of(planner).model_fields}
 
 
 def _words(given: Sequence[str] | None) -> list[str] | None:

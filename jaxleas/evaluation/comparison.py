@@ -16,6 +16,8 @@ from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.labels import Here, Judge, PlannerSettings, ProcessWorkers
 
 Results = dict[ResultKey, CellResult]
+_SAME = ("suite", "seed", "robot", "foresight")
+"""What must agree before results of one evaluation count in another."""
 
 
 def compare(
@@ -91,22 +93,27 @@ class _Sheet:
         self.head, self.results = (
             (head, {}) if before is None else _merged(before, head, self.cells)
         )
+        self._latest: Evaluation | None = None
         self.earlier = (before.seconds or 0.0) if before is not None and self.results else 0.0
 
     def add(self, result: CellResult) -> None:
         """Take a result in; the file holds it from now on."""
         self.results[result_key(result)] = result
+        self._latest = None
         if self.file is not None:
             write_evaluation(self.file, self.evaluation())
 
     def evaluation(self) -> Evaluation:
-        """Return all results, in the order of the suite's cells."""
+        """Return all results, in the order of the suite's cells; the same until one is added."""
+        if self._latest is not None:
+            return self._latest
         seconds = round(self.earlier + time.perf_counter() - self.begin, 2)
         ordered = tuple(
             result for cell in self.cells for key, result in self.results.items() if key[:4] == cell
         )
         changes = {"cells": ordered, "seconds": seconds, "created": now()}
-        return self.head.model_copy(update=changes)
+        self._latest = self.head.model_copy(update=changes)
+        return self._latest
 
 
 def side_by_side_file(run: Path, suite: Suite) -> Path:
@@ -125,6 +132,7 @@ def _head(
         fingerprint=candidate.fingerprint,
         policies=dict(contenders.fingerprints),
         planners={name: judge.settings.model_dump(mode="json") for name, judge in judges.items()},
+        foresight=None if candidate.refusal is None else candidate.refusal.describe(),
         robot=candidate.env.config.robot,
         seed=suite.seed,
         created=now(),
@@ -139,7 +147,7 @@ def _merged(
 
     What the file knows of policies and planners that are not asked for now stays in it.
     """
-    if (before.suite, before.seed, before.robot) != (head.suite, head.seed, head.robot):
+    if any(getattr(before, name) != getattr(head, name) for name in _SAME):
         return head, {}
     results: Results = {}
     for result in before.cells:

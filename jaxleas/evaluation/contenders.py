@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Walker, walker
 from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
+from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.roadmap_walker import roadmap_walker
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
@@ -60,7 +60,7 @@ def make_contenders(
     walkers, fingerprints = {}, {}
     for name in chosen:
         if name in policies:
-            walkers[name] = _policy_walker(policies[name])
+            walkers[name] = _policy_walker(policies[name], candidate.refusal)
             fingerprints[name] = fingerprint_of(policies[name])
         elif name == ROADMAP:
             import_ompl()
@@ -93,7 +93,7 @@ def fingerprint_of(path: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def _policy_walker(path: Path) -> Walker:
+def _policy_walker(path: Path, refusal: Refusal | None) -> Walker:
     policy = load_policy(path)
-    env = SteeringEnv(policy.config)
+    env = env_of(policy.config, refusal)
     return walker(env, leas(env, policy))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.judge import judge
+from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
@@ -32,22 +33,28 @@ class Candidate:
         fingerprint: SHA-256 of its file.
         env: the task it was trained for.
         methods: the policy as a steering method first, then the baselines.
+        refusal: of their guide paths that are foreseen to fail; None: none is.
     """
 
     path: Path
     fingerprint: str
     env: SteeringEnv
     methods: Mapping[str, SteeringMethod]
+    refusal: Refusal | None = None
 
 
-def load_candidate(path: str | Path) -> Candidate:
+def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidate:
     """Load a run folder, a policy.npz or an .onnx file, with the baselines to compare with.
 
+    Args:
+        path: of the policy.
+        refusal: of guide paths that are foreseen to fail.
+
     Raises:
-        InputError: there is no policy, or it cannot be used.
+        InputError: there is no policy, it cannot be used, or the surrogate is not for it.
     """
     policy = load_policy(path)
-    env = SteeringEnv(policy.config)
+    env = env_of(policy.config, refusal)
     limits, speed = env.config.limits, env.config.desired_speed
     methods = {
         POLICY: leas(env, policy),
@@ -55,7 +62,7 @@ def load_candidate(path: str | Path) -> Candidate:
     }
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
-    return Candidate(Path(path), fingerprint, env, methods)
+    return Candidate(Path(path), fingerprint, env, methods, refusal)
 
 
 def examine(
@@ -91,6 +98,7 @@ def examine(
         suite=plan.name,
         policy=str(candidate.path),
         fingerprint=candidate.fingerprint,
+        foresight=None if candidate.refusal is None else candidate.refusal.describe(),
         robot=candidate.env.config.robot,
         seed=plan.seed,
         created=now(),

@@ -32,6 +32,7 @@ class Walk:
         end: index of each roll-out's last configuration.
         reached: the goal, valid all the way.
         invalid: an invalid configuration was met.
+        refused: a surrogate foresaw failure there; None where none was asked.
     """
 
     starts: Starts
@@ -42,6 +43,7 @@ class Walk:
     end: Int[np.ndarray, " N"]
     reached: Bool[np.ndarray, " N"]
     invalid: Bool[np.ndarray, " N"]
+    refused: Bool[np.ndarray, " N"] | None = None
 
     def path(self, index: int) -> Float[np.ndarray, "T 3"]:
         """Return the root positions of one roll-out up to its end [m]."""
@@ -82,6 +84,7 @@ def walk(
         end=np.asarray(result.end),
         reached=np.asarray(result.reached),
         invalid=np.asarray(result.invalid),
+        refused=None if env.foresight is None else np.asarray(result.refused),
     )
 
 
@@ -145,6 +148,7 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
         reached=fraction[0],
         invalid=fraction[1],
         stopped=rounded(1.0 - fraction[0] - fraction[1]),
+        refused=None if walked.refused is None else rounded(walked.refused.mean()),
         low=rounded(low),
         high=rounded(high),
         expectation=cell.expectation,

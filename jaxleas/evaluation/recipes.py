@@ -91,6 +91,13 @@ THESIS = (
     Row("circuit", "circuit", steps=3000),
 )
 
+FOOTSTEPS = tuple(
+    row
+    for row in THESIS
+    if row.scenario in ("stairs_up", "stairs_down", "rubble", "long_course") and row.yaw == 0.0
+)
+"""T figs. 5.6 and 5.8: what the planners of chapter 5 were asked about."""
+
 RECIPES: Mapping[str, Recipe] = MappingProxyType(
     {
         # T table 3.3; 600 steps walk 12 m at the desired speed, twice the longest crossing.
@@ -112,6 +119,7 @@ RECIPES: Mapping[str, Recipe] = MappingProxyType(
             steps=800,
             in_report=False,
         ),
+        "footsteps": Recipe(FOOTSTEPS, starts=200, steps=800, starts_per_scene=10, in_report=False),
         "thesis": Recipe(THESIS, starts=100, steps=800, starts_per_scene=10, in_report=False),
     }
 )

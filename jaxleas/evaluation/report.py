@@ -15,15 +15,16 @@ from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.table import (
     HEADINGS,
-    THESIS,
     cell_title,
     filled_columns,
     method_title,
+    navigation,
     percent,
     rows,
 )
 from jaxleas.files import read_json, write_bytes, write_text
 from jaxleas.training.metrics import read_metrics
+from jaxleas.types import InputError
 
 TEMPLATE = "report.html"
 MOST_LISTED = 12
@@ -167,7 +168,7 @@ def success_rows(evaluation: Evaluation | None) -> list[SuccessRow]:
             if found:
                 values = [_value(found.get(kind)) for kind in KINDS]
                 table.append(SuccessRow(f"{yaw:.0f}°", method_title(method), values))
-        quoted = [(percent(THESIS.get((kind, yaw)), 0), "") for kind in KINDS]
+        quoted = [(percent(navigation(kind, yaw), 0), "") for kind in KINDS]
         table.append(SuccessRow(f"{yaw:.0f}°", "thesis, table 3.3", quoted))
     return table
 
@@ -195,7 +196,10 @@ def _text(path: Path) -> str:
 def _provenance(path: Path) -> list[tuple[str, str]]:
     if not path.is_file():
         return []
-    return [(key, _plain(value)) for key, value in read_json(path).items()]
+    record = read_json(path)
+    if not isinstance(record, dict):
+        raise InputError(f"{path} is no record of a run: it needs an object")
+    return [(key, _plain(value)) for key, value in record.items()]
 
 
 def _plain(value: Any) -> str:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from jaxleas.files import read_json, write_json
+from jaxleas.files import read_json, require_version, write_json
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -45,6 +45,8 @@ class CellResult(Strict):
     """An invalid configuration was met."""
     stopped: Fraction
     """Valid to the end of the episode, without reaching the goal."""
+    refused: Fraction | None = None
+    """Of those stopped: a surrogate foresaw failure; null where none was asked."""
     planned: Fraction | None = None
     """The goal was reached and the planner made contacts for the whole guide path."""
     robustness: float | None = None
@@ -107,6 +109,9 @@ class Evaluation(Strict):
     """Further policies: SHA-256 of the file of each, by the method's name."""
     planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Settings of the exact planners, by name."""
+    foresight: dict[str, Any] | None = None
+    """Where guides foreseen to fail were refused: `surrogate` (SHA-256 of its file), `planner`,
+    `threshold`."""
     robot: str
     seed: int
     created: str
@@ -135,6 +140,7 @@ def read_evaluation(path: str | Path) -> Evaluation:
     content = read_json(path)
     if not isinstance(content, dict):
         raise InputError(f"{path} is not an evaluation: it needs an object with `suite`, `cells`")
+    require_version(content, VERSION, path)
     try:
         return Evaluation.model_validate(content)
     except ValidationError as error:

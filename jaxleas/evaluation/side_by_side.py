@@ -2,38 +2,11 @@
 
 from collections.abc import Sequence
 
+from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.table import align, cell_title, method_title, percent
 
 PLANNER_TITLES = {"sampling": "sampling", "mip": "MIP", "sl1m": "SL1M"}
-# What T prints of success with the sampling-based planner: cell (name, yaw, speed) -> method.
-_BY_METHOD = ("rb_lin", "rb_kino", "rb_kino_rrt", "leas_p1", "leas_p2_sampling")
-_PUBLISHED: dict[tuple[str, float, float], tuple[float | None, ...]] = {
-    # table 4.1; RB-Lin cannot start with a velocity there.
-    ("rotation", 15.0, 0.0): (1.0, 1.0, None, 1.0, 1.0),
-    ("rotation", 15.0, 0.04): (None, 1.0, None, 1.0, 1.0),
-    ("rotation", 15.0, 0.07): (None, 1.0, None, 1.0, 1.0),
-    ("rotation", 90.0, 0.0): (1.0, 0.61, None, 0.75, 1.0),
-    ("rotation", 90.0, 0.04): (None, 1.0, None, 0.84, 1.0),
-    ("rotation", 90.0, 0.07): (None, 1.0, None, 0.89, 1.0),
-    ("rotation", 165.0, 0.0): (1.0, 0.0, None, 0.22, 1.0),
-    ("rotation", 165.0, 0.04): (None, 0.0, None, 0.35, 1.0),
-    ("rotation", 165.0, 0.07): (None, 0.43, None, 0.42, 1.0),
-    # table 4.2
-    ("hole_rim", 0.0, 0.04): (0.82, 0.74, None, 1.0, 1.0),
-    ("bridge_ahead", 0.0, 0.04): (0.86, 0.78, None, 0.96, 1.0),
-    # table 4.3
-    ("rubble", 0.0, 0.04): (None, None, 1.0, 1.0, 1.0),
-    ("stairs_up", 0.0, 0.04): (None, None, 0.74, 1.0, 1.0),
-}
-
-
-def published(result: CellResult) -> float | None:
-    """Return the thesis's success with the sampling-based planner (tables 4.1-4.3), if any."""
-    row = _PUBLISHED.get((result.name, result.yaw, result.speed))
-    if row is None or result.method not in _BY_METHOD:
-        return None
-    return row[_BY_METHOD.index(result.method)]
 
 
 def has_plans(evaluation: Evaluation) -> bool:

@@ -2,20 +2,10 @@
 
 from collections.abc import Sequence
 
+from jaxleas.evaluation.published import published_value
 from jaxleas.evaluation.result_file import AreaResult, CellResult, Evaluation
 
 THESIS_METHOD = "leas_p1"
-# T table 3.3: fraction of 100 starts that reach the goal, by cell and heading [deg].
-THESIS = {
-    ("rubble", 0.0): 1.00,
-    ("bridge", 0.0): 1.00,
-    ("stairs_down", 0.0): 1.00,
-    ("stairs_up", 0.0): 1.00,
-    ("rubble", 180.0): 1.00,
-    ("bridge", 180.0): 0.87,
-    ("stairs_down", 180.0): 1.00,
-    ("stairs_up", 180.0): 0.97,
-}
 METHOD_TITLES = {
     "rb_lin": "RB-Lin",
     "rb_kino": "RB-Kino",
@@ -63,6 +53,11 @@ def percent(fraction: float | None, digits: int = 1) -> str:
     return f"{value:.{digits}f} %"
 
 
+def navigation(cell: str, yaw: float) -> float | None:
+    """Return T table 3.3: the fraction of 100 starts that reach the goal, by cell and heading."""
+    return published_value("reached", None, cell, yaw, 0.0, THESIS_METHOD)
+
+
 def rows(evaluation: Evaluation) -> list[tuple[str, ...]]:
     """Return the cells of the table as text, one row a cell and method."""
     return [_row(evaluation.suite, cell) for cell in evaluation.cells]
@@ -84,7 +79,7 @@ def _row(suite: str, cell: CellResult) -> tuple[str, ...]:
         "-" if cell.mean_time is None else f"{cell.mean_time:.1f} s",
         "-" if cell.mean_length is None else f"{cell.mean_length:.2f} m",
         "-" if cell.detour is None else f"{cell.detour:.2f}",
-        percent(THESIS.get((cell.name, cell.yaw)), 0) if quoted else "-",
+        percent(navigation(cell.name, cell.yaw), 0) if quoted else "-",
     )
 
 

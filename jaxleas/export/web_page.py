@@ -9,6 +9,7 @@ import numpy as np
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.layout import layout_named
 from jaxleas.export.web_runtime import RUNTIME_FILES, runtime_folder
 from jaxleas.files import write_bytes, write_json
 from jaxleas.guide.onnx_metadata import describe
@@ -41,8 +42,14 @@ def write_page(
         runtime: the `dist` folder of onnxruntime-web, if npm is not to fetch it.
 
     Raises:
-        InputError: the terrain is too large or the start invalid, or a file cannot be written.
+        InputError: the terrain is too large or the start invalid, the page cannot make the policy's
+            observation, or a file cannot be written.
     """
+    if layout_named(config.observation).counts_surfaces:
+        raise InputError(
+            f"a page does not count surfaces, as the observation {config.observation} asks for:"
+            " export a policy of another layout"
+        )
     if terrain.heights.size > MOST_CELLS:
         raise InputError(
             f"a terrain of {terrain.heights.size} cells is too large for a page, which takes"

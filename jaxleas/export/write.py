@@ -21,6 +21,7 @@ SOURCE = (
     "LEAS steering policy: J. Chemin, thesis NNT 2022ISAT0046, chapter 3;"
     " Chemin et al., Learning to steer a locomotion contact planner, ICRA 2021"
 )
+VERSION = 1  # of export.json
 
 
 def export_policy(
@@ -58,6 +59,7 @@ def export_policy(
     parity = {"observations": len(observations), "tolerance": TOLERANCE, **differences}
     onnx_file = build_onnx(policy, {**metadata, "parity": json.dumps(parity)})
     record = {
+        "version": VERSION,
         "jaxleas": version("jaxleas"),
         "parity": parity,
         "policy.onnx": _file(onnx_file, {"opset": OPSET}),

@@ -1,7 +1,9 @@
-"""Writing: to a temporary name beside the target, flushed to disk, then renamed."""
+"""Writing: to a temporary name beside the target, flushed to disk, renamed, the folder flushed."""
 
+import errno
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +13,9 @@ from typing import Any
 import numpy as np
 
 from jaxleas.types.errors import InputError
+
+# What `tempfile.mkstemp` makes of ".NAME." and the suffix: eight letters between them.
+_TEMPORARY = re.compile(r"\..+\.[a-z0-9_]{8}(\.[A-Za-z0-9]+)?")
 
 
 @contextmanager
@@ -36,6 +41,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         _flush(temporary)
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
+        _flush_folder(target.parent)
     except OSError as error:
         raise InputError(f"cannot write {target}: {error.strerror or error}") from error
     finally:
@@ -65,9 +71,30 @@ def write_npz(path: str | Path, **arrays: np.ndarray) -> None:
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
 
 
+def sweep_temporaries(folder: str | Path) -> None:
+    """Remove what writers that were killed left behind in a folder that nobody else writes to."""
+    for path in Path(folder).glob(".*"):
+        if _TEMPORARY.fullmatch(path.name) and path.is_file():
+            path.unlink(missing_ok=True)
+
+
 def _flush(path: Path) -> None:
     with path.open("rb") as stream:
         os.fsync(stream.fileno())
+
+
+def _flush_folder(folder: Path) -> None:
+    """Make the new name itself survive a power cut, where the file system can."""
+    if not hasattr(os, "O_DIRECTORY"):
+        return
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.EBADF):  # it cannot
+            raise
+    finally:
+        os.close(descriptor)
 
 
 def _umask() -> int:

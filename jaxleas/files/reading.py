@@ -1,103 +1,103 @@
 """Reading: every failure is an InputError that names the file, the key and what would do."""
 
-import difflib
-import json
-import struct
-import zipfile
-import zlib
-from collections.abc import Iterable
+import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from jaxleas.files.json_text import MAX_BYTES as MAX_JSON_BYTES
+from jaxleas.files.json_text import parse_json
+from jaxleas.files.npz import MAX_BYTES, DamagedError, read_arrays
 from jaxleas.types.errors import InputError
-
-MAX_BYTES = 2**30  # a larger array file is a mistake or an attack, not a map
-
-# Whatever zipfile, zlib and numpy raise over bytes that are not what they claim to be.
-_DAMAGES = (
-    EOFError,
-    KeyError,
-    MemoryError,
-    NotImplementedError,
-    OSError,
-    OverflowError,
-    RuntimeError,
-    ValueError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
 
 
 def read_json(path: str | Path) -> Any:
-    """Return the value in a JSON file.
+    """Return the value in a JSON file; its numbers are finite, its text is Unicode.
 
     Raises:
-        InputError: the file is missing, unreadable or not JSON.
+        InputError: the file is missing, unreadable, not JSON, too large or nested too deep.
     """
-    text = _bytes(path).decode("utf-8", errors="replace")
-    try:
-        return json.loads(text, parse_constant=lambda name: _refuse_constant(path, name))
-    except (ValueError, RecursionError) as error:  # ValueError: also numbers of 5000 digits
-        raise InputError(f"{path} is not valid JSON: {error}") from error
+    return parse_json(read_bytes(path, MAX_JSON_BYTES), str(path))
 
 
-def read_npz(path: str | Path, required: tuple[str, ...]) -> dict[str, np.ndarray]:
+def read_npz(
+    path: str | Path, required: tuple[str, ...], max_bytes: int = MAX_BYTES
+) -> dict[str, np.ndarray]:
     """Return the arrays of a .npz file; Python objects inside it are refused.
 
     Args:
         path: the file.
         required: names of arrays that must be there.
+        max_bytes: that all arrays together may take.
 
     Raises:
-        InputError: the file is missing, truncated, too large, or lacks an array.
+        InputError: the file is missing, damaged, too large, or lacks an array.
     """
     _require_file(path)
     try:
-        with zipfile.ZipFile(path) as archive:
-            size = sum(entry.file_size for entry in archive.infolist())
-        if size > MAX_BYTES:
-            raise InputError(f"{path} unpacks to {size} bytes, more than the {MAX_BYTES} allowed")
-        with np.load(path, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-    except _DAMAGES as error:
+        arrays = read_arrays(path, max_bytes)
+    except DamagedError as error:
         raise InputError(f"{path} is not a readable .npz file: {error}") from error
     missing = [name for name in required if name not in arrays]
     if missing:
         raise InputError(
-            f"{path} lacks the array {', '.join(missing)}; it holds {', '.join(arrays) or 'none'}"
+            f"{path} lacks the array {', '.join(missing)}; it holds"
+            f" {', '.join(map(ascii, arrays)).replace(chr(39), '') or 'none':.200}"
         )
     return arrays
 
 
-def _bytes(path: str | Path) -> bytes:
+def read_bytes(path: str | Path, max_bytes: int) -> bytes:
+    """Return the content of a file.
+
+    Raises:
+        InputError: it is missing, unreadable, or larger than `max_bytes`.
+    """
     _require_file(path)
     try:
-        return Path(path).read_bytes()
+        with Path(path).open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            content = stream.read(min(size, max_bytes) + 1)  # `read` takes so much at once
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    if len(content) > max_bytes:
+        raise InputError(f"{path} is larger than the {max_bytes} bytes such a file may have")
+    return content
+
+
+def require_version(content: dict[str, Any], version: int, where: str | Path) -> None:
+    """Refuse a file of another version; one that states none is of the first.
+
+    Args:
+        content: of the file.
+        version: that is read.
+        where: names the file, for the message.
+
+    Raises:
+        InputError: says which version it is of.
+    """
+    found = content.get("version", 1)
+    if found != version or isinstance(found, bool):
+        raise InputError(
+            f"{where} is of version {str(found)[:20]}; this jaxleas reads version {version}: make"
+            " it again, or use the jaxleas that wrote it"
+        )
+
+
+def require_version_array(arrays: dict[str, np.ndarray], version: int, where: str | Path) -> None:
+    """Refuse a .npz whose array `version` says another one; see `require_version`."""
+    found = arrays.get("version")
+    if found is not None:
+        stated = found.item() if found.size == 1 else f"an array of shape {found.shape}"
+        require_version({"version": stated}, version, where)
 
 
 def _require_file(path: str | Path) -> None:
-    if Path(path).is_dir():
-        raise InputError(f"{path} is a folder, not a file")
-    if not Path(path).is_file():
-        raise InputError(f"{path} does not exist")
-
-
-def _refuse_constant(path: str | Path, name: str) -> None:
-    raise InputError(f"{path} holds {name}, which is neither JSON nor a usable number")
-
-
-def refuse_misspelt_keys(where: str | Path, keys: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse a key that looks like a known one; others, a comment say, are let pass.
-
-    Raises:
-        InputError: says which key, and which was probably meant.
-    """
-    for key in keys:
-        nearest = difflib.get_close_matches(key, known, n=1, cutoff=0.75)
-        if nearest and nearest[0] != key:
-            raise InputError(f"{where}: unknown key '{key}'; did you mean '{nearest[0]}'?")
+    try:
+        if Path(path).is_dir():
+            raise InputError(f"{path} is a folder, not a file")
+        if not Path(path).is_file():
+            raise InputError(f"{path} does not exist")
+    except (OSError, ValueError) as error:  # a name that no file can have
+        raise InputError(f"{str(path)!r:.200} is no file: {error}") from error

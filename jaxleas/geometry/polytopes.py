@@ -12,6 +12,7 @@ from jaxleas.geometry.boxes import Box
 from jaxleas.types.errors import InputError
 
 _SAME_FACE = 1e-7  # faces of one plane, split by the hull's triangulation, agree better than this
+MAX_FACES = 10_000
 _ON_FACE = 1e-7  # a vertex this near to a face [m] lies on it
 
 
@@ -31,6 +32,8 @@ class Polytope:
     offsets: Float[np.ndarray, " F"]
 
     def __post_init__(self) -> None:
+        if len(self.offsets) > MAX_FACES:
+            raise InputError(f"a polytope of {len(self.offsets)} faces; at most {MAX_FACES}")
         if self.normals.shape != (len(self.offsets), 3):
             raise InputError(
                 f"a polytope needs one normal of three numbers for each of its "

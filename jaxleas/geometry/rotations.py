@@ -21,7 +21,9 @@ def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"])
     return jnp.concatenate([turned, vector[..., 2:]], axis=-1)
 
 
-def rotate_to_world(vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+def rotate_to_world(
+    vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]
+) -> Float[Array, "*batch N D"]:
     """Turn N vectors per robot from the root's heading into the world's axes.
 
     Args:
@@ -34,7 +36,9 @@ def rotate_to_world(vector_in_root: Float[Array, "*batch N D"], yaw: Float[Array
     return rotate_by_yaw(vector_in_root, yaw[..., None])
 
 
-def rotate_to_root(vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]):
+def rotate_to_root(
+    vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch"]
+) -> Float[Array, "*batch N D"]:
     """Turn N vectors per robot from the world's axes into the root's heading.
 
     Args:
@@ -49,6 +53,7 @@ def rotate_to_root(vector: Float[Array, "*batch N D"], yaw: Float[Array, "*batch
 
 def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     """Bring an angle [rad] into [-pi, pi)."""
-    wrapped = (angle + jnp.pi) % (2 * jnp.pi) - jnp.pi
-    # In float32 the remainder of a tiny negative number rounds up to 2 pi itself.
-    return jnp.where(wrapped >= jnp.pi, -jnp.pi, wrapped)
+    # Not the remainder: XLA:CPU calls a function of the C library for each one.
+    wrapped = angle - 2 * jnp.pi * jnp.floor((angle + jnp.pi) / (2 * jnp.pi))
+    # Rounding may leave it just outside, on either side.
+    return jnp.where(wrapped >= jnp.pi, -jnp.pi, jnp.maximum(wrapped, -jnp.pi))

@@ -8,12 +8,13 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from jaxleas.files import read_json, read_npz, write_npz
+from jaxleas.files import read_json, read_npz, require_version_array, write_npz
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import GuidePath, InputError, Query
 
 Reason = Literal["reached", "invalid", "stopped"]
 
+VERSION = 1  # of guide path files
 MAX_QUERIES = 100_000
 MAX_ABOVE_GROUND = 2.0  # a root higher than this [m] is given in other units or in another frame
 MAX_COORDINATE = 1e4  # likewise [m]; float32 still tells millimetres apart there
@@ -157,6 +158,7 @@ def write_guide_paths(
         query=np.repeat(np.arange(len(lengths)), lengths),
         reached=np.array([reason == "reached" for reason in reasons]),
         reason=np.array(reasons, dtype=np.str_),
+        version=np.array(VERSION),
         **({} if waypoints is None else {"waypoints": np.asarray(waypoints, np.float64)}),
     )
 
@@ -169,6 +171,7 @@ def read_guide_paths(path: str | Path) -> GuidePathFile:
     """
     required = ("time", "position", "yaw", "velocity", "valid")
     arrays = read_npz(path, required)
+    require_version_array(arrays, VERSION, path)
     rows = arrays["time"].shape[0] if arrays["time"].ndim else 0
     shapes = {"position": (rows, 3), "velocity": (rows, 3)}
     arrays.setdefault("query", np.zeros(rows, np.int64))
@@ -187,7 +190,11 @@ def read_guide_paths(path: str | Path) -> GuidePathFile:
     if not np.array_equal(arrays["query"][first], np.arange(len(first))):
         raise InputError(f"{path}: query must count 0, 1, 2, ... through the rows")
     reasons = arrays.get("reason", np.array([], np.str_))
-    if len(reasons) not in (0, len(first)) or not set(reasons.tolist()) <= set(get_args(Reason)):
+    if (
+        reasons.ndim != 1
+        or len(reasons) not in (0, len(first))
+        or not set(reasons.tolist()) <= set(get_args(Reason))
+    ):
         raise InputError(
             f"{path}: reason must say one of {', '.join(get_args(Reason))} for each of the"
             f" {len(first)} paths"

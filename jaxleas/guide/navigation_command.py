@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.roadmaps import Navigation, Navigator, Places
     from jaxleas.guide.steering_method import SteeringMethod
+    from jaxleas.terrain.scene import Scene
 
 
 def navigate(
@@ -62,9 +63,10 @@ def navigate(
     """
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.roadmaps import Budget, Places
-    from jaxleas.guide.roadmaps.exact import judge_exactly, scene_of
+    from jaxleas.guide.roadmaps.exact import judge_exactly, require_exact_start, scene_of
     from jaxleas.guide.roadmaps.search import import_ompl
     from jaxleas.terrain.importers import import_terrain
+    from jaxleas.training.compilation import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)
     goal, _ = _place("--to", to, may_turn=False)
@@ -75,6 +77,7 @@ def navigate(
         require_picture(picture)
     if planner != "none":
         import_ompl()
+    keep_compiled_programs()
     env, method = _steering(steering, policy)
     ground = import_terrain(
         terrain,
@@ -88,9 +91,11 @@ def navigate(
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
     places.require_valid("--to", goal, None)
-    navigator = make_navigator(places, method, steering, planner)
-    found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
     scene = scene_of(terrain, up, scale)
+    if scene is not None:
+        require_exact_start(places, scene, motion)
+    navigator = make_navigator(places, method, steering, planner, scene)
+    found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
     verdict = None if scene is None else judge_exactly(env.robot, scene, found.path)
     _write(out, found)
     if picture is not None:
@@ -99,24 +104,41 @@ def navigate(
 
 
 def make_navigator(
-    places: "Places", method: "SteeringMethod", steering: Steering, planner: str
+    places: "Places",
+    method: "SteeringMethod",
+    steering: Steering,
+    planner: str,
+    scene: "Scene | None" = None,
+    reach: float | None = None,
 ) -> "Navigator":
     """Return a navigator tuned for a steering method.
 
     LEAS gets near a waypoint and around things on the way: long edges, waypoints reached within
     the goal's radius. The baselines get exactly there, and only where the straight way is free:
     short edges, followed to the centimetre, because a corner cut is a way that was never tried.
+
+    Args:
+        places: of the terrain.
+        method: that walks.
+        steering: what kind it is.
+        planner: rrt, prm or none.
+        scene: the terrain's polygons, whose exact conditions judge every whole path.
+        reach: length of an edge of a tree at most [m], in place of the tuned one.
     """
     from jaxleas.guide.roadmaps.connections import Connector
+    from jaxleas.guide.roadmaps.exact import refusals
     from jaxleas.guide.roadmaps.navigation import Navigator
 
-    config = places.env.config
-    reach, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
+    config, robot = places.env.config, places.env.robot
+    usual, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
+    reach = usual if reach is None else reach
     # Twice the time of the straight way, and time to turn around.
     straight = reach / (config.desired_speed * config.limits.time_step)
     turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
     steps = math.ceil(1.25 * straight + turn)
-    return Navigator(Connector(places, method, radius, steps), planner, reach)  # type: ignore[arg-type]
+    connector = Connector(places, method, radius, steps)
+    refused = None if scene is None else lambda path: np.logical_or(*refusals(robot, scene, path))
+    return Navigator(connector, planner, reach, refused)  # type: ignore[arg-type]
 
 
 def start_motion(

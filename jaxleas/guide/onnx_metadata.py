@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ObservationLayout, layout_named
+from jaxleas.files import parse_json
 from jaxleas.types import InputError
 
 FORMAT = 1
@@ -59,7 +60,8 @@ def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
         )
     try:
         form, observation, stated = (
-            json.loads(metadata[key]) for key in ("format", "observation", "steering_config")
+            parse_json(metadata[key], f"{path}: {key} of its metadata")
+            for key in ("format", "observation", "steering_config")
         )
         name = observation["name"]
     except (ValueError, TypeError, KeyError) as error:
@@ -87,6 +89,7 @@ def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
 
 
 def _observation(layout: ObservationLayout, config: SteeringConfig) -> dict[str, Any]:
+    last = layout.counts_surfaces
     return {
         "name": layout.name,
         "size": layout.size,
@@ -94,8 +97,8 @@ def _observation(layout: ObservationLayout, config: SteeringConfig) -> dict[str,
         "columns": list(layout.columns),
         "order": "velocity x, y, z in the root frame; angle to the goal; heights of the grid points"
         " relative to the root, row by row from the rearmost (first of rows), each row from right"
-        " (first of columns) to left",
-        "units": ["m/s", "m/s", "m/s", "rad", "m"],
+        " (first of columns) to left" + "; number of surfaces in the 0.8 m around the root" * last,
+        "units": ["m/s", "m/s", "m/s", "rad", "m", *["1"] * last],
         "height_clip": [config.height_low, config.height_high],
     }
 

@@ -13,6 +13,8 @@ from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate
+from jaxleas.files import read_bytes
+from jaxleas.guide.onnx_graph import require_plain_graph
 from jaxleas.guide.onnx_metadata import INPUT, OUTPUT, read_config
 from jaxleas.types import InputError, RootMotion
 
@@ -47,12 +49,7 @@ def read_onnx_policy(path: str | Path) -> OnnxPolicy:
     Raises:
         InputError: the file is missing, damaged, no policy, or of another observation layout.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise InputError(f"{path} does not exist" if not path.is_dir() else f"{path} is a folder")
-    if path.stat().st_size > MAX_BYTES:
-        raise InputError(f"{path} is larger than the {MAX_BYTES} bytes a policy may have")
-    return onnx_policy_from_bytes(path.read_bytes(), path)
+    return onnx_policy_from_bytes(read_bytes(path, MAX_BYTES), path)
 
 
 def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
@@ -79,13 +76,20 @@ def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
 def _read_metadata(content: bytes, path: object) -> dict[str, str]:
     """Check the graph; return what the file says about itself."""
     import onnx
+    from google.protobuf.message import DecodeError
 
     try:
         model = onnx.load_model_from_string(content)
+        require_plain_graph(model, path)
         onnx.checker.check_model(model, full_check=True)
-    except Exception as error:  # protobuf's and onnx's own, with no common base
-        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
-        raise InputError(f"{path} is not a usable ONNX file: {reason}") from error
+    except (
+        DecodeError,
+        onnx.checker.ValidationError,
+        onnx.shape_inference.InferenceError,
+        UnicodeDecodeError,
+        ValueError,
+    ) as error:
+        raise InputError(f"{path} is not a usable ONNX file: {_reason(error)}") from error
     opsets = {each.domain: each.version for each in model.opset_import}
     if set(opsets) - {"", "ai.onnx"} or opsets.get("", opsets.get("ai.onnx")) not in OPSETS:
         raise InputError(
@@ -95,17 +99,34 @@ def _read_metadata(content: bytes, path: object) -> dict[str, str]:
     return {each.key: each.value for each in model.metadata_props}
 
 
+def _reason(error: Exception) -> str:
+    """Return the first line of what somebody else's library says, for our own sentence."""
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    return lines[0].encode(errors="replace").decode()[:200]
+
+
 def _session(content: bytes, path: object) -> Any:
     import onnxruntime
+    from onnxruntime.capi import onnxruntime_pybind11_state as refusals
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 4  # its complaints come as exceptions; nothing on the terminal
     try:
         return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
-    except Exception as error:
-        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
-        raise InputError(f"{path} cannot be run by onnxruntime: {reason}") from error
+    except (
+        refusals.EPFail,
+        refusals.Fail,
+        refusals.InvalidArgument,
+        refusals.InvalidGraph,
+        refusals.InvalidProtobuf,
+        refusals.NoSuchFile,
+        refusals.NotImplemented,
+        refusals.RuntimeException,
+        RuntimeError,
+        UnicodeDecodeError,
+    ) as error:
+        raise InputError(f"{path} cannot be run by onnxruntime: {_reason(error)}") from error
 
 
 class OnnxLeas:

@@ -1,6 +1,7 @@
 """Roll-out: a steering method walks many robots at once, from their starts to their goals."""
 
 from dataclasses import replace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -28,6 +29,7 @@ class RollOut:
         end: index of the last configuration.
         reached: the last waypoint was reached, every configuration valid.
         invalid: the last configuration violates the condition.
+        refused: the environment's foresight refused the configuration that would have come next.
     """
 
     position: Float[Array, "N T+1 3"]
@@ -38,10 +40,11 @@ class RollOut:
     end: Int[Array, " N"]
     reached: Bool[Array, " N"]
     invalid: Bool[Array, " N"]
+    refused: Bool[Array, " N"]
 
     @property
     def stopped(self) -> Bool[Array, " N"]:
-        """Valid to the end of the time, without reaching the goal."""
+        """Valid to the end of the time, or refused, without reaching the goal."""
         return ~(self.reached | self.invalid)
 
 
@@ -55,11 +58,13 @@ class _Walk:
     end: Int[Array, " N"]
     reached: Bool[Array, " N"]
     invalid: Bool[Array, " N"]
+    refused: Bool[Array, " N"]
+    memory: Any
     record: tuple[RootMotion, Float[Array, "T+1 N"]]
 
     @property
     def walking(self) -> Bool[Array, " N"]:
-        return ~(self.reached | self.invalid)
+        return ~(self.reached | self.invalid | self.refused)
 
 
 @struct.dataclass
@@ -79,7 +84,12 @@ class _Course:
             lambda leaf: jnp.zeros((self.steps + 1, *leaf.shape), leaf.dtype), (start, start.yaw)
         )
         zero, no = jnp.zeros(count, jnp.int32), jnp.zeros(count, bool)
-        return _Walk(jnp.int32(0), start, zero, zero, no, no, record)
+        refused, memory = no, ()
+        if self.env.foresight is not None:
+            heights = self.env.local_heights(self.atlas, self.map_index, start)
+            foreseen, memory = self.env.foresight.begin(heights, start, jnp.zeros(count))
+            refused = ~(foreseen >= 0.0)
+        return _Walk(jnp.int32(0), start, zero, zero, no, no, refused, memory, record)
 
     def goes_on(self, walk: _Walk) -> Bool[Array, ""]:
         return (walk.step <= self.steps) & jnp.any(walk.walking)
@@ -90,12 +100,17 @@ class _Course:
         margin = self.env.condition(heights, walk.motion)
         walking, sought = walk.walking, self._seek(walk)
         invalid = walking & ~(margin >= 0.0)  # a NaN is no valid configuration
+        refused, memory = self._foresee(walk, heights)
+        refused &= walking & ~invalid
+        walking &= ~refused
         walk = replace(
             walk,
             waypoint=sought,
             end=jnp.where(walking, walk.step, walk.end),
             reached=walk.reached | (walking & ~invalid & (sought == self.waypoints.shape[1])),
             invalid=walk.invalid | invalid,
+            refused=walk.refused | refused,
+            memory=memory,
             record=jax.tree.map(
                 lambda whole, now: jax.lax.dynamic_update_index_in_dim(whole, now, walk.step, 0),
                 walk.record,
@@ -105,6 +120,15 @@ class _Course:
         last = jnp.minimum(sought, self.waypoints.shape[1] - 1)
         goal = jnp.take_along_axis(self.waypoints, last[:, None, None], axis=1)[:, 0]
         return walk, heights, goal
+
+    def _foresee(self, walk: _Walk, heights: Float[Array, "N points"]) -> tuple[Array, Any]:
+        """Return whom the foresight refuses now, and its memory; `begin` has shown it the first."""
+        if self.env.foresight is None:
+            return jnp.zeros_like(walk.refused), walk.memory
+        foreseen, after = self.env.foresight.follow(walk.memory, heights, walk.motion)
+        later = walk.step > 0
+        memory = jax.tree.map(lambda new, old: jnp.where(later, new, old), after, walk.memory)
+        return later & ~(foreseen >= 0.0), memory
 
     def move(self, walk: _Walk, proposed: RootMotion) -> _Walk:
         """Move the robots that still walk."""
@@ -129,6 +153,7 @@ class _Course:
             end=walk.end,
             reached=walk.reached,
             invalid=walk.invalid,
+            refused=walk.refused,
         )
 
     def _seek(self, walk: _Walk) -> Int[Array, " N"]:
@@ -154,8 +179,9 @@ def roll_out(
     """Walk N robots with a steering method until each has arrived, failed, or used up its time.
 
     A walk ends where its last waypoint is reached (all of them within `radius`, horizontally, one
-    after another), at its first invalid configuration (which belongs to it), or after `steps`
-    steps. The computation ends when nobody walks any more. It is compiled once for each
+    after another), at its first invalid configuration (which belongs to it), before the first that
+    the environment's foresight refuses (asked with chance 0: by its threshold alone), or after
+    `steps` steps. The computation ends when nobody walks any more. It is compiled once for each
     environment, kind of method and shapes.
 
     Args:

@@ -2,6 +2,7 @@
 
 from jaxleas.labels.judging import Judge
 from jaxleas.labels.label import judge_shard, label_shards, plan_shards
+from jaxleas.labels.own_planner import Outcome, OwnPlanner
 from jaxleas.labels.planners import judge, judge_over
 from jaxleas.labels.settings import MipSettings, PlannerSettings, Sl1mSettings
 from jaxleas.labels.shards import Shard, read_verdicts
@@ -12,6 +13,8 @@ __all__ = [
     "Here",
     "Judge",
     "MipSettings",
+    "Outcome",
+    "OwnPlanner",
     "PlannerSettings",
     "ProcessWorkers",
     "Shard",

@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from jaxleas.types.errors import InputError
+
 if TYPE_CHECKING:
+    from jaxleas.files import FolderLock
     from jaxleas.labels.workers import Workers
 
 
@@ -14,7 +17,8 @@ def label(
     *,
     scene: Path,
     out: Path,
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling",
+    planner: str = "sampling",
+    parameters: Sequence[str] | None = None,
     keep_every: int | None = None,
     samples: int | None = None,
     heuristic: Literal["fixed_step", "manipulability", "effort", "reference"] | None = None,
@@ -24,6 +28,7 @@ def label(
     window: float | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
+    weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     workers: Literal["processes", "ray"] = "processes",
 ) -> None:
@@ -33,7 +38,8 @@ def label(
         guides: guide path files, .npz.
         scene: that they walk on, .json; or an .stl or .obj mesh in metres, z up.
         out: folder of the verdict files; the same command goes on where it was interrupted.
-        planner: that judges.
+        planner: that judges: sampling, mip, sl1m, or MODULE:CLASS of your own.
+        parameters: of a planner of your own, as longest_step=0.3.
         keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
         samples: sampling: leg configurations in the data base, 25000 by default.
         heuristic: sampling: by which candidates are tried, fixed_step by default.
@@ -42,7 +48,9 @@ def label(
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
         time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
-        max_combinations: sl1m: after which it gives up, 2000 by default.
+        max_combinations: sl1m: after which it gives up, 2000 by default; 0: what the relaxation
+            leaves undecided fails.
+        weights: sl1m: of the slacks, uniform by default; guide: the guide path chooses.
         processes: working at the same time; all cores by default.
         workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
     """
@@ -52,7 +60,7 @@ def label(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     from jaxleas.labels.label import label_shards, plan_shards
-    from jaxleas.labels.settings import settings_from
+    from jaxleas.labels.settings import settings_from, settings_of
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.labels.workers import require_count
 
@@ -67,6 +75,8 @@ def label(
         window=window,
         time_limit=time_limit,
         max_combinations=max_combinations,
+        weights=weights,
+        **settings_of(parameters or ()),
     )
     if processes is not None:
         require_count(processes)
@@ -78,7 +88,10 @@ def label(
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
-        with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        with (
+            _held(Path(out)),
+            Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        ):
             task = progress.add_task("label", total=sum(map(len, shards)))
             judged, before = label_shards(shards, team, lambda done: progress.advance(task, done))
     finally:
@@ -92,6 +105,21 @@ def label(
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )
+
+
+def _held(out: Path) -> "FolderLock":
+    """Return a hold on the folder of verdicts: two that write it would judge all twice.
+
+    Raises:
+        InputError: somebody else holds it, or it cannot be made.
+    """
+    from jaxleas.files import FolderLock
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {out}: {error.strerror or error}") from error
+    return FolderLock(out, "the label folder", "give another --out")
 
 
 def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":

@@ -16,7 +16,7 @@ from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 _MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
-"""Guide paths: enough to work on abreast, few enough to do again when a worker dies."""
+"""Guide paths, 8 for others: enough to work on abreast, few to do again when a worker dies."""
 _TASKS_EACH = 4  # for every worker, so that all end at about the same time
 _ABREAST = "sampling"  # gains from few, large tasks instead: it walks their paths abreast
 
@@ -37,7 +37,7 @@ class Judge:
             verdicts = judge.judge(scenes, paths, scene_index)
 
     Attributes:
-        planner: its name: sampling, mip or sl1m.
+        planner: its name: sampling, mip, sl1m, or MODULE:CLASS.
         settings: of the planner.
     """
 
@@ -119,7 +119,7 @@ class Judge:
     def _groups(self, index: np.ndarray) -> list[np.ndarray]:
         """Return the paths of each task: those over one scene together."""
         order = np.argsort(index, kind="stable")
-        most, count = _MOST_A_TASK[self.planner], self._workers.count
+        most, count = _MOST_A_TASK.get(self.planner, 8), self._workers.count
         rounds = max(
             -(-len(index) // (most * count)), 1 if self.planner == _ABREAST else _TASKS_EACH
         )

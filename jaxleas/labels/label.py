@@ -12,7 +12,7 @@ from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError
 
 GUIDES_A_SHARD = {"sampling": 64, "mip": 16, "sl1m": 16}
-"""Enough to work on abreast, few enough to lose when interrupted."""
+"""16 for others. Enough to work on abreast, few enough to lose when interrupted."""
 
 
 def plan_shards(
@@ -37,7 +37,7 @@ def plan_shards(
         InputError: a file cannot be used, two have the same name, or the settings do not fit.
     """
     chosen = require_settings(planner, settings)
-    a_shard = a_shard or GUIDES_A_SHARD[planner]
+    a_shard = a_shard or GUIDES_A_SHARD.get(planner, 16)
     load_scene(scene)
     stems = [path.stem for path in guides]
     twice = sorted({stem for stem in stems if stems.count(stem) > 1})

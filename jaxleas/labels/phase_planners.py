@@ -21,7 +21,7 @@ from jaxleas.contacts.from_guide import (
     kept_configurations,
 )
 from jaxleas.labels.settings import MipSettings, Sl1mSettings
-from jaxleas.labels.verdict import Verdict
+from jaxleas.labels.verdict import Verdict, mean_step
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
@@ -92,6 +92,7 @@ class _Search:
                 plan = plan_sl1m(
                     prefix,
                     max_combinations=settings.max_combinations,
+                    weights=settings.weights,
                     time_limit=left,
                     diagnose=False,
                 )
@@ -191,11 +192,3 @@ def _verdict(
         reason=reason,
         seconds=time.perf_counter() - begun,
     )
-
-
-def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
-    """Return the way of the root up to a configuration for each step [m]; None without step."""
-    if steps < 1:
-        return None
-    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
-    return float(np.linalg.norm(walked, axis=1).sum() / steps)

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
-from jaxleas.labels.phase_planners import judge_by_phases, mean_step
+from jaxleas.labels.own_planner import OwnPlanner, judge_by_own
+from jaxleas.labels.phase_planners import judge_by_phases
 from jaxleas.labels.settings import PlannerSettings, require_settings
-from jaxleas.labels.verdict import Verdict
+from jaxleas.labels.verdict import Verdict, mean_step
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
@@ -20,7 +21,7 @@ def judge(
     """Ask an exact planner about guide paths over one scene.
 
     Args:
-        planner: its name: sampling, mip or sl1m.
+        planner: its name: sampling, mip, sl1m, or MODULE:CLASS of one's own.
         scene: to walk on.
         guide_paths: to be judged.
         settings: of the planner; its defaults if None.
@@ -54,6 +55,11 @@ def judge_over(
         Verdicts in the order of the guide paths.
     """
     chosen = require_settings(planner, settings)
+    if isinstance(chosen, OwnPlanner):
+        return [
+            judge_by_own(scenes[index], path, chosen, first + number)
+            for number, (path, index) in enumerate(zip(guide_paths, scene_index, strict=True))
+        ]
     if not isinstance(chosen, SamplingSettings):
         return [
             judge_by_phases(scenes[index], path, chosen, first + number)

@@ -72,7 +72,7 @@ class RayWorkers:
                 include_dashboard=False if here else None,
                 log_to_driver=False,
             )
-        except (ConnectionError, RuntimeError, ValueError) as error:
+        except Exception as error:  # Ray raises bare ones too, when a node is slow to start
             raise InputError(f"Ray cannot be reached or started: {error}") from error
 
     def _answer(self, reference: Any) -> Any:

@@ -1,13 +1,17 @@
 """What each exact planner can be told when it judges guide paths: part of a label's provenance."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
+import yaml
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, ValidationError
 
 from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
 from jaxleas.contacts.problem import Model
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sl1m import MAX_COMBINATIONS
+from jaxleas.contacts.slack_weights import SlackWeights
+from jaxleas.labels.own_planner import OwnPlanner, is_own, load_planner
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -36,11 +40,13 @@ class MipSettings(PhaseSettings):
 class Sl1mSettings(PhaseSettings):
     """Settings of SL1M."""
 
-    max_combinations: PositiveInt = MAX_COMBINATIONS
-    """of surfaces for the undecided steps, after which it gives up"""
+    max_combinations: NonNegativeInt = MAX_COMBINATIONS
+    """of surfaces for the undecided steps, after which it gives up; 0: without that heuristics"""
+    weights: SlackWeights = "uniform"
+    """of the slacks: uniform, as published, or guide: the guide path chooses among surfaces"""
 
 
-PlannerSettings = SamplingSettings | MipSettings | Sl1mSettings
+PlannerSettings = SamplingSettings | MipSettings | Sl1mSettings | OwnPlanner
 SETTINGS: dict[str, type[PlannerSettings]] = {
     "sampling": SamplingSettings,
     "mip": MipSettings,
@@ -49,17 +55,29 @@ SETTINGS: dict[str, type[PlannerSettings]] = {
 """The exact planners that can be asked for labels, each with the kind of its settings."""
 
 
+def kind_of(planner: str) -> type[PlannerSettings]:
+    """Return the kind of a planner's settings; a planner of one's own is its own settings.
+
+    Raises:
+        InputError: there is no such planner.
+    """
+    if is_own(planner):
+        return load_planner(planner)
+    if planner not in SETTINGS:
+        raise InputError(
+            f"there is no planner {planner!r} for labels; there are {', '.join(SETTINGS)}, and"
+            " MODULE:CLASS of your own"
+        )
+    return SETTINGS[planner]
+
+
 def require_settings(planner: str, settings: PlannerSettings | None) -> PlannerSettings:
     """Return the settings of a planner: those given, if they are its own, or its defaults.
 
     Raises:
         InputError: there is no such planner, or the settings are another's.
     """
-    kind = SETTINGS.get(planner)
-    if kind is None:
-        raise InputError(
-            f"there is no planner {planner!r} for labels; there are {', '.join(SETTINGS)}"
-        )
+    kind = kind_of(planner)
     if settings is None:
         return kind()
     if type(settings) is not kind:
@@ -94,4 +112,22 @@ def settings_from(planner: str, **given: Any) -> PlannerSettings:
 
 def seed_of(settings: PlannerSettings) -> NonNegativeInt | None:
     """Return the seed that a planner draws from; None for one that draws nothing."""
-    return settings.seed if isinstance(settings, SamplingSettings) else None
+    return getattr(settings, "seed", None)
+
+
+def settings_of(words: Sequence[str]) -> dict[str, Any]:
+    """Return settings written as NAME=VALUE, values as in YAML.
+
+    Raises:
+        InputError: a word is no such pair.
+    """
+    settings = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        if not (name.isidentifier() and equals):
+            raise InputError(f"--parameters {word}: they look like longest_step=0.3")
+        try:
+            settings[name] = yaml.safe_load(text)
+        except yaml.YAMLError as error:
+            raise InputError(f"--parameters {word}: {text} is not YAML") from error
+    return settings

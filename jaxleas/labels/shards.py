@@ -6,7 +6,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from jaxleas.files import read_json, write_json
+from jaxleas.files import read_json, require_version, write_json
+from jaxleas.labels.own_planner import OwnPlanner, source_of
 from jaxleas.labels.settings import PlannerSettings, seed_of
 from jaxleas.labels.verdict import Verdict, verdict_from_json, verdict_to_json
 from jaxleas.types.errors import InputError
@@ -52,6 +53,8 @@ class Shard:
         if not self.out.exists():
             return False
         content = read_json(self.out)
+        if isinstance(content, dict):
+            require_version(content, VERSION, self.out)
         found = content.get("provenance") if isinstance(content, dict) else None
         if found != self.provenance:
             raise InputError(
@@ -65,8 +68,10 @@ def provenance_of(
     guides: Path, scene: Path, planner: str, settings: PlannerSettings
 ) -> dict[str, Any]:
     """Return where verdicts come from: planner, version, parameters, terrain, seed, guide paths."""
+    own = {"source": source_of(type(settings))} if isinstance(settings, OwnPlanner) else {}
     return {
         "planner": planner,
+        **own,
         "jaxleas": version("jaxleas"),
         "parameters": settings.model_dump(mode="json"),
         "seed": seed_of(settings),
@@ -99,11 +104,19 @@ def read_verdicts(folder: str | Path) -> list[tuple[dict[str, Any], Verdict]]:
     found = []
     for path in files:
         content = read_json(path)
-        if not isinstance(content, dict) or content.get("version") != VERSION:
-            raise InputError(f"{path} is no verdict file of version {VERSION}")
-        for value in content["verdicts"]:
-            found.append((content["provenance"], verdict_from_json(value, str(path))))
+        provenance, verdicts = _parts(path, content)
+        found += [(provenance, verdict_from_json(value, str(path))) for value in verdicts]
     return found
+
+
+def _parts(path: Path, content: Any) -> tuple[dict[str, Any], list[Any]]:
+    if not isinstance(content, dict) or not {"provenance", "verdicts"} <= content.keys():
+        raise InputError(f"{path} is no verdict file: it needs version, provenance and verdicts")
+    require_version(content, VERSION, path)
+    provenance, verdicts = content["provenance"], content["verdicts"]
+    if not isinstance(provenance, dict) or not isinstance(verdicts, list):
+        raise InputError(f"{path} is no verdict file: it needs an object and a list of verdicts")
+    return provenance, verdicts
 
 
 def _sha256(path: Path) -> str:

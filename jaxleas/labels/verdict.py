@@ -1,8 +1,13 @@
 """An exact planner's verdict on one guide path."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
+from functools import cache
 from typing import Any
 
+import numpy as np
+from pydantic import BaseModel, ValidationError, create_model
+
+from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 
@@ -60,4 +65,24 @@ def verdict_from_json(value: Any, where: str) -> Verdict:
     names = set(Verdict.__dataclass_fields__)
     if not isinstance(value, dict) or set(value) != names:
         raise InputError(f"{where} is no verdict: it needs the keys {', '.join(sorted(names))}")
+    try:
+        _model().model_validate(value, strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        raise InputError(f"{where} is no verdict: {key}: {first['msg']}") from error
     return Verdict(**value)
+
+
+@cache
+def _model() -> type[BaseModel]:
+    """Return what checks the types: a dataclass by itself takes anything."""
+    return create_model("Verdict", **{each.name: (each.type, ...) for each in fields(Verdict)})  # type: ignore[call-overload]
+
+
+def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
+    """Return the way of the root up to a configuration for each step [m]; None without step."""
+    if steps < 1:
+        return None
+    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
+    return float(np.linalg.norm(walked, axis=1).sum() / steps)

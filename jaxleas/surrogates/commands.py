@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from jaxleas.types.errors import InputError
 
@@ -11,7 +11,7 @@ def fit(
     labels: Sequence[Path],
     *,
     out: Path,
-    planner: Literal["sampling", "mip", "sl1m"] | None = None,
+    planner: str | None = None,
     policy: Path | None = None,
     where: Sequence[Path] = (),
     epochs: int = 12,
@@ -55,6 +55,11 @@ def fit(
     if planner is not None and found.planner != planner:
         raise InputError(
             f"{labels[0]} holds verdicts of the {found.planner} planner, not of {planner}"
+        )
+    if found.robot != config.robot:
+        raise InputError(
+            f"{labels[0]} holds verdicts on {found.robot}, but the policy is for {config.robot}:"
+            " label guide paths of that robot"
         )
     identity = Identity(
         planner=found.planner,

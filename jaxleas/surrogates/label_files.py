@@ -7,15 +7,17 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from jaxleas.files import read_json
+from pydantic import BaseModel, Field, ValidationError
+
+from jaxleas.files import read_json, require_version
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.terrain.rasterise import rasterise
-from jaxleas.types import InputError
+from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64
 VERSION = 2  # of verdict files
@@ -28,6 +30,7 @@ class Labels:
     Attributes:
         planner: that judged.
         parameters: it was given.
+        robot: whose contacts it planned.
         walks: with verdicts.
         atlas: their terrains.
         passed_over: guide paths without a verdict: the planner's time limit came first.
@@ -35,6 +38,7 @@ class Labels:
 
     planner: str
     parameters: dict[str, Any]
+    robot: str
     walks: LabelledWalks
     atlas: Atlas
     passed_over: int
@@ -66,22 +70,22 @@ def read_labels(
     contents = [_read(path) for path in files]
     first = contents[0]["provenance"]
     for path, content in zip(files, contents, strict=True):
-        for key in ("planner", "parameters"):
-            if content["provenance"][key] != first[key]:
-                raise InputError(
-                    f"{path} holds verdicts of another planner or other parameters than"
-                    f" {files[0]}: one surrogate stands in for one planner"
-                )
+        if _whose(content["provenance"]) != _whose(first):
+            raise InputError(
+                f"{path} holds verdicts of another planner or other parameters, or on another"
+                f" robot, than {files[0]}: one surrogate stands in for one planner"
+            )
     keep_every = int(first["parameters"]["keep_every"])
     scenes: dict[str, int] = {}
     maps, parts, passed_over = [], [], 0
-    for content in contents:
+    for path, content in zip(files, contents, strict=True):
         provenance = content["provenance"]
         scene = finder.find(provenance["scene"])
         if provenance["scene"]["sha256"] not in scenes:
             scenes[provenance["scene"]["sha256"]] = len(maps)
             maps.append(rasterise(load_scene(scene), resolution))
         paths = read_guide_paths(finder.find(provenance["guides"])).paths
+        _require_paths(content, paths, path)
         verdicts = [each for each in content["verdicts"] if each.get("decided", True)]
         passed_over += len(content["verdicts"]) - len(verdicts)
         if not verdicts:
@@ -101,26 +105,75 @@ def read_labels(
     return Labels(
         planner=first["planner"],
         parameters=first["parameters"],
+        robot=_robot(first),
         walks=join(parts).trimmed(),
         atlas=make_atlas(maps),
         passed_over=passed_over,
     )
 
 
+class _File(BaseModel):
+    """What of a file's name and fingerprint is looked at."""
+
+    file: str
+    sha256: str
+
+
+class _Parameters(BaseModel):
+    keep_every: Annotated[int, Field(ge=1, le=100_000)]
+
+
+class _Provenance(BaseModel):
+    planner: str
+    parameters: _Parameters
+    scene: _File
+    guides: _File
+
+
+class _Verdict(BaseModel):
+    path: Annotated[int, Field(ge=0)]
+    last_index: Annotated[int, Field(ge=-1)]
+    decided: bool = True
+
+
+class _VerdictFile(BaseModel):
+    provenance: _Provenance
+    verdicts: list[_Verdict]
+
+
+def _whose(provenance: dict[str, Any]) -> tuple[Any, ...]:
+    """Return what all verdicts that a surrogate learns from must have in common."""
+    return provenance["planner"], provenance["parameters"], _robot(provenance)
+
+
+def _robot(provenance: dict[str, Any]) -> str:
+    """Return whose contacts were planned: Talos's, where a file does not say."""
+    return str(provenance.get("robot", "talos"))
+
+
 def _read(path: Path) -> dict[str, Any]:
     content = read_json(path)
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is no verdict file: it needs an object")
+    require_version(content, VERSION, path)
     try:
-        if content["version"] != VERSION:
-            raise InputError(f"{path} is a verdict file of version {content['version']}, not 1")
-        provenance = content["provenance"]
-        int(provenance["parameters"]["keep_every"])
-        for name in ("scene", "guides"):
-            str(provenance[name]["file"]), str(provenance[name]["sha256"])
-        for verdict in content["verdicts"]:
-            int(verdict["path"]), int(verdict["last_index"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{path} is no verdict file: {error!r}") from error
+        _VerdictFile.model_validate(content, strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        raise InputError(f"{path} is no verdict file: {key}: {first['msg']}") from error
     return content
+
+
+def _require_paths(content: dict[str, Any], paths: Sequence[GuidePath], path: Path) -> None:
+    """Refuse verdicts on guide paths, or on configurations, that there are not."""
+    for each in content["verdicts"]:
+        number, last = each["path"], each["last_index"]
+        if number >= len(paths) or last >= len(paths[number]):
+            raise InputError(
+                f"{path} holds a verdict on configuration {last} of guide path {number}, which the"
+                " guide path file does not have"
+            )
 
 
 class _Finder:
@@ -132,7 +185,7 @@ class _Finder:
 
     def find(self, named: dict[str, str]) -> Path:
         """Return the file of that name whose content is what the verdicts were made from."""
-        fingerprint, name = named["sha256"], Path(named["file"]).name
+        fingerprint, name = named["sha256"], Path(named["file"]).name  # never out of its folder
         if fingerprint in self.found:
             return self.found[fingerprint]
         changed = None

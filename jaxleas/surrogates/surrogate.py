@@ -17,7 +17,7 @@ class Identity(Strict):
     """Whose stand-in a surrogate is, and for which robot and observation."""
 
     planner: str
-    """sampling, mip or sl1m"""
+    """sampling, mip, sl1m, or MODULE:CLASS of the user's own"""
     parameters: dict[str, JsonValue]
     """of the planner"""
     robot: str

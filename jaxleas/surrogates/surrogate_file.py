@@ -11,13 +11,14 @@ from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.files import read_npz, write_npz
+from jaxleas.files import parse_json, read_npz, write_npz
 from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.surrogates.network import Weights
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.types import InputError
 
 FORMAT = 1
+MAX_BYTES = 2**28  # a surrogate of a quarter of a gigabyte is a mistake
 _WEIGHTS = tuple(field.name for field in fields(Weights))  # type: ignore[arg-type]
 
 
@@ -43,9 +44,10 @@ def read_surrogate(path: str | Path) -> Surrogate:
     Raises:
         InputError: the file is not a surrogate, is damaged, or is of another format.
     """
-    arrays = read_npz(path, required=("metadata", "scale", "shift", *_WEIGHTS))
+    required = ("metadata", "scale", "shift", *_WEIGHTS)
+    arrays = read_npz(path, required, max_bytes=MAX_BYTES)
     try:
-        metadata = json.loads(str(arrays["metadata"]))
+        metadata = parse_json(str(arrays["metadata"]), f"{path}: its metadata")
         if metadata["format"] != FORMAT:
             raise InputError(
                 f"{path} is a surrogate of format {metadata['format']}; this version reads"
@@ -54,6 +56,9 @@ def read_surrogate(path: str | Path) -> Surrogate:
         identity = Identity.model_validate(metadata["identity"])
         if identity.keep_every < 1:
             raise ValueError("keep_every must be at least 1")
+        report = metadata.get("report", {})
+        if not isinstance(report, dict):
+            raise ValueError("report must be an object")
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))
@@ -66,7 +71,7 @@ def read_surrogate(path: str | Path) -> Surrogate:
         scale=jnp.asarray(arrays["scale"]),
         shift=jnp.asarray(arrays["shift"]),
         identity=identity,
-        report=metadata.get("report", {}),
+        report=report,
     )
 
 

@@ -1,14 +1,15 @@
 """Many height maps as one device array, sampled by robots anywhere on any of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import jax.numpy as jnp
 import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types.compute_once import compute_once
 from jaxleas.types.errors import InputError
 
 # No ground. Far below every robot, so that a height relative to any root stays below
@@ -35,6 +36,11 @@ class Atlas:
         """Return the number of maps."""
         return self.heights.shape[0]
 
+    @property
+    def always(self) -> Bool[Array, ""]:
+        """True, which the compiler does not know (`compute_once`)."""
+        return self.origin[0, 0] > -jnp.inf
+
     def height_at(
         self, map_index: Int[Array, "*batch"], point_in_world: Float[Array, "*batch points 2"]
     ) -> Float[Array, "*batch points"]:
@@ -51,6 +57,49 @@ class Atlas:
         index = (map_index[..., None] * rows + row) * columns + column
         # One flat gather; the index is in range by construction, so XLA need not check it.
         return self.heights.reshape(maps * rows * columns).at[index].get(mode="promise_in_bounds")
+
+    def heights_around(
+        self,
+        map_index: Int[Array, "*batch"],
+        position: Float[Array, "*batch 3"],
+        yaw: Float[Array, "*batch"],
+        points_in_root: Float[np.ndarray, "points 2"],
+        then: Callable[..., Array] = lambda heights: heights,
+        *numbers: Float[Array, "*batch"],
+    ) -> Float[Array, "*batch points"]:
+        """Return the terrain height under points that a root carries with it, relative to it [m].
+
+        As `height_at` of these points, but what is one number a robot is computed once a robot.
+
+        Args:
+            map_index: of each robot's map.
+            position: of the root in the world [m].
+            yaw: of the root [rad].
+            points_in_root: the points, the same for all robots [m].
+            then: done to the heights in the same pass over them, so that they are not kept.
+            numbers: of each robot, that `then` asks for.
+        """
+        _, rows, columns = self.heights.shape
+        cells_per_metre = 1.0 / self.resolution
+        corner = (position[..., :2] - self.origin[map_index]) * cells_per_metre + 0.5
+        cosine, sine = jnp.cos(yaw) * cells_per_metre, jnp.sin(yaw) * cells_per_metre
+        first = map_index * (rows * columns)
+        ahead, left = (
+            jnp.asarray(points_in_root[:, axis], jnp.float32).reshape((1,) * yaw.ndim + (-1,))
+            for axis in (0, 1)
+        )
+
+        def gather(heights: Array, *robot: Array) -> Array:
+            x, y, z, cosine, sine, first = (each[..., None] for each in robot[:6])
+            # Clamped before it is cut down to a whole number: no floor needed, none out of range.
+            column = jnp.clip(x + cosine * ahead - sine * left, 0.0, columns - 1.0)
+            row = jnp.clip(y + sine * ahead + cosine * left, 0.0, rows - 1.0)
+            index = first + row.astype(jnp.int32) * columns + column.astype(jnp.int32)
+            found = heights.reshape(-1).at[index].get(mode="promise_in_bounds")
+            return then(found - z, *robot[6:])
+
+        robot = (corner[..., 0], corner[..., 1], position[..., 2], cosine, sine, first)
+        return compute_once(gather, self.always, self.heights, *robot, *numbers)
 
 
 def make_atlas(maps: Sequence[HeightMap]) -> Atlas:

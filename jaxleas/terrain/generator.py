@@ -29,7 +29,7 @@ class Arena:
 
     Attributes:
         scene: its polygons; the corner of tile (0, 0) is the world's origin.
-        tiles: kind and heights a cell, [row = y][column = x].
+        tiles: kind and heights a cell, [row = y, column = x].
         links: tasks, each undirected link twice.
         dead_ends: tasks that cannot be done, from every initial tile.
     """

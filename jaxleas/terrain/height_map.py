@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Float32
 
-from jaxleas.files import read_npz, write_npz
+from jaxleas.files import read_npz, require_version_array, write_npz
 from jaxleas.types.errors import InputError
 
 MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 0.5
 """Accepted cell sizes [m]: finer is not needed by a foot, coarser misses bridges and steps."""
 MAX_CELLS = 64_000_000
+MAX_BYTES = 4 * MAX_CELLS + 2**20
+VERSION = 1
 MAX_HEIGHT = 10_000.0
 """A height beyond this is a unit mistake, not a terrain [m]."""
 
@@ -58,12 +60,13 @@ class HeightMap:
 
 
 def read_height_map(path: str | Path) -> HeightMap:
-    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` [x, y] [m].
+    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` x, y [m].
 
     Raises:
         InputError: says which array is missing or unusable, and what would do.
     """
-    arrays = read_npz(path, required=("heights", "resolution", "origin"))
+    arrays = read_npz(path, required=("heights", "resolution", "origin"), max_bytes=MAX_BYTES)
+    require_version_array(arrays, VERSION, path)
     heights, resolution, origin = arrays["heights"], arrays["resolution"], arrays["origin"]
     if heights.dtype.kind != "f" or heights.dtype.itemsize != 4:
         raise InputError(
@@ -92,6 +95,7 @@ def write_height_map(path: str | Path, height_map: HeightMap) -> None:
         heights=height_map.heights.astype(np.float32),
         resolution=np.array(height_map.resolution, dtype=np.float64),
         origin=np.array(height_map.origin, dtype=np.float64),
+        version=np.array(VERSION),
     )
 
 

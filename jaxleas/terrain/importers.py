@@ -1,9 +1,13 @@
 """Real terrains from files: meshes, images, height maps and scenes, all to a height map."""
 
+import io
+import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
 
+from jaxleas.files import read_bytes
 from jaxleas.terrain.height_map import (
     MAX_CELLS,
     HeightMap,
@@ -21,6 +25,7 @@ SEAM = 1e-3
 MESH_MARGIN = 0.1
 """Width of void around an imported mesh [m]."""
 WHITE = 65535
+MAX_PNG_BYTES = 2**28
 
 
 def import_terrain(
@@ -111,7 +116,9 @@ def import_png(
     if not (np.isfinite([z_min, z_max]).all() and z_min < z_max):
         raise InputError(f"{path}: z_min {z_min:g} m must be below z_max {z_max:g} m")
     values = np.flipud(_grey_values(Path(path)))
-    heights = (z_min + (z_max - z_min) * (values / WHITE)).astype(np.float32)
+    heights = np.empty(values.shape, np.float32)
+    for row, line in enumerate(values):  # in float64, a row at a time
+        heights[row] = z_min + (z_max - z_min) * (line / WHITE)
     if zero_is_void:
         heights[values == 0] = np.nan
     if min(heights.shape) < 2:
@@ -125,17 +132,25 @@ def import_png(
 def _grey_values(path: Path) -> np.ndarray:
     from PIL import Image
 
-    if not path.is_file():
-        raise InputError(f"{path} does not exist" if not path.exists() else f"{path} is a folder")
+    content = read_bytes(path, MAX_PNG_BYTES)
+    width, height = _png_size(path, content)
+    if width * height > MAX_CELLS:
+        raise InputError(f"{path} has {width} x {height} pixels, more than {MAX_CELLS}")
     try:
-        with Image.open(path, formats=("PNG",)) as image:
-            width, height = image.size
-            if width * height > MAX_CELLS:
-                raise InputError(f"{path} has {width} x {height} pixels, more than {MAX_CELLS}")
+        with Image.open(io.BytesIO(content), formats=("PNG",)) as image:
             if not image.mode.startswith("I"):
                 raise InputError(
                     f"{path} is a PNG of mode {image.mode}; heights need 16-bit grey (mode I;16)"
                 )
-            return np.asarray(image).astype(np.int64)
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise InputError(f"{path} is not a readable PNG image: {error}") from error
+            return np.asarray(image).astype(np.uint16)
+    # Pillow's own, over chunks that are cut short or hold something else; texts in them it bounds.
+    except (OSError, ValueError, SyntaxError, IndexError, struct.error, zlib.error) as error:
+        words = " ".join(str(error).split())[:100]
+        raise InputError(f"{path} is not a readable PNG image: {words}") from error
+
+
+def _png_size(path: Path, content: bytes) -> tuple[int, int]:
+    """Return width and height as its first chunk states them, before Pillow takes memory."""
+    if content[:8] != b"\x89PNG\r\n\x1a\n" or content[12:16] != b"IHDR":
+        raise InputError(f"{path} is not a readable PNG image: it does not begin like one")
+    return int.from_bytes(content[16:20], "big"), int.from_bytes(content[20:24], "big")

@@ -1,17 +1,16 @@
-"""Reading STL and OBJ meshes as triangles, and refusing what is not a terrain."""
+"""Meshes as triangles, z up and in metres; what is not a terrain is refused."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.terrain.mesh_files import read_mesh
 from jaxleas.types.errors import InputError
 
 Up = Literal["x", "y", "z"]
 SUFFIXES = (".stl", ".obj")
-MAX_TRIANGLES = 5_000_000
-MAX_BYTES = 2**30
 MIN_EXTENT, MAX_EXTENT = 0.5, 1000.0
 """Accepted horizontal sizes of a terrain [m]."""
 AXES: dict[str, tuple[int, int, int]] = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
@@ -35,39 +34,15 @@ def read_triangles(
         raise InputError(f"up is '{up}'; it must be one of x, y, z")
     if not 0.0 < scale < np.inf:
         raise InputError(f"scale {scale:g} must be a positive number of metres a unit")
-    triangles = _load(Path(path))[..., AXES[up]] * scale
+    if Path(path).suffix.lower() not in SUFFIXES:
+        raise InputError(f"{path} is not a mesh this package reads: {', '.join(SUFFIXES)}")
+    with np.errstate(over="ignore", invalid="ignore"):  # refused below
+        triangles = read_mesh(Path(path))[..., AXES[up]] * scale
     if not len(triangles):
         raise InputError(f"{path} has no triangles: is it a mesh with faces?")
-    if len(triangles) > MAX_TRIANGLES:
-        raise InputError(
-            f"{path} has {len(triangles)} triangles, more than the {MAX_TRIANGLES} accepted; "
-            f"decimate it first"
-        )
     if not np.isfinite(triangles).all():
         raise InputError(f"{path} has a vertex that is not a finite number")
     return _terrain_only(path, triangles)
-
-
-def _load(path: Path) -> Float[np.ndarray, "N 3 3"]:
-    import trimesh  # takes half a second: only those who import a mesh pay for it
-
-    if not path.is_file():
-        raise InputError(f"{path} does not exist" if not path.exists() else f"{path} is a folder")
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"{path} is not a mesh this package reads: {', '.join(SUFFIXES)}")
-    if path.stat().st_size > MAX_BYTES:
-        raise InputError(f"{path} is larger than {MAX_BYTES} bytes; decimate it first")
-    options: dict[str, Any] = {"process": False}
-    if path.suffix.lower() == ".obj":
-        options |= {"skip_materials": True, "group_material": False}
-    try:
-        mesh = trimesh.load_mesh(path, file_type=path.suffix[1:].lower(), **options)
-        return np.asarray(mesh.triangles, dtype=np.float64).reshape(-1, 3, 3)
-    except MemoryError as error:
-        raise InputError(f"{path} does not fit into memory") from error
-    except Exception as error:  # trimesh raises many kinds on a broken file
-        reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
-        raise InputError(f"{path} is not a readable {path.suffix[1:]} mesh: {reason}") from error
 
 
 def _terrain_only(

@@ -11,6 +11,8 @@ CONVEXITY_TOLERANCE = 1e-3
 """Largest accepted distance by which a vertex may lie on the wrong side of an edge [m]."""
 VERTICAL_SLOPE = 1e-3
 """A polygon whose unit normal's |z| is below this is vertical: it has no height above a point."""
+MAX_VERTICES = 1000
+"""Of one polygon: checks compare each vertex with each edge."""
 MIN_AREA = 1e-6
 """A polygon smaller than this is degenerate [m^2]."""
 
@@ -58,6 +60,7 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
     """
     if len(vertices) < 3:
         raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
+    require_few(vertices, where)
     if not np.isfinite(vertices).all():
         raise InputError(f"{where} has a coordinate that is not a finite number")
     gaps = np.linalg.norm(vertices[:, None, :] - vertices[None, :, :], axis=-1)
@@ -74,6 +77,12 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
             )
     elif area[2] < 0.0:
         raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
+
+
+def require_few(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
+    """Refuse a polygon of more vertices than can be checked against each other."""
+    if len(vertices) > MAX_VERTICES:
+        raise InputError(f"{where} has {len(vertices)} vertices, more than {MAX_VERTICES}")
 
 
 def require_planar_and_convex(vertices: Float[np.ndarray, "V 3"], where: str) -> None:

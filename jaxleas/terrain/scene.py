@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.files import read_json, refuse_misspelt_keys, write_json
+from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.terrain.polygons import require_convex_polygon
 from jaxleas.types.errors import InputError
 
 VERSION = 1
+MAX_CORNERS = 10_000_000
 KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas")
 Polygons = dict[str, Float[np.ndarray, "V 3"]]
 
@@ -49,8 +50,7 @@ def read_scene(path: str | Path) -> Scene:
     if not isinstance(content, dict) or "surfaces" not in content:
         raise InputError(f"{path} is not a scene: it needs an object with the key 'surfaces'")
     refuse_misspelt_keys(path, content, KNOWN_KEYS)
-    if content.get("version", VERSION) != VERSION:
-        raise InputError(f"{path} has version {content['version']!r}; this package reads {VERSION}")
+    require_version(content, VERSION, path)
     scene = Scene(
         surfaces=_polygons(path, content, "surfaces", dimensions=(3,)),
         obstacles=_polygons(path, content, "obstacles", dimensions=(3,)),
@@ -89,7 +89,15 @@ def _polygons(
     group = content.get(key, {})
     if not isinstance(group, dict):
         raise InputError(f"{path}: '{key}' must be an object of name: [[x, y, z], ...]")
-    return {name: _polygon(path, key, name, value, dimensions) for name, value in group.items()}
+    polygons = {name: _polygon(path, key, name, each, dimensions) for name, each in group.items()}
+    # They are laid out as one array, as wide as the widest (terrain/rasterise.py).
+    corners = len(polygons) * max((len(each) for each in polygons.values()), default=0)
+    if corners > MAX_CORNERS:
+        raise InputError(
+            f"{path} has {len(polygons)} {key}, the largest of {corners // len(polygons)} corners:"
+            f" more than {MAX_CORNERS} corners in all"
+        )
+    return polygons
 
 
 def _polygon(

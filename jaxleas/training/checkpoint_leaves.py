@@ -8,9 +8,12 @@ import numpy as np
 
 from jaxleas.types.errors import InputError
 
+KEYS = ("threefry2x32", "rbg", "unsafe_rbg")
+"""Kinds of random keys that JAX has."""
+
 
 def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Return what each leaf is, and the arrays of those that are arrays.
+    """Return what each leaf is, and copies of those that are arrays.
 
     Args:
         state: a pytree of arrays, typed random keys and Python numbers.
@@ -28,9 +31,9 @@ def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
             entry["value"] = leaf  # JSON keeps Python's numbers exactly
         elif _is_key(leaf):
             entry["random_key"] = str(jax.random.key_impl(leaf))
-            arrays[name] = np.asarray(jax.random.key_data(leaf))
+            arrays[name] = np.array(jax.random.key_data(leaf))
         elif isinstance(leaf, jax.Array | np.ndarray | np.generic):
-            arrays[name] = np.asarray(leaf)
+            arrays[name] = np.array(leaf)  # on a CPU `asarray` would show JAX's own memory
         else:
             raise TypeError(f"{name} is a {type(leaf).__name__}, which no checkpoint can hold")
         entries.append(entry)
@@ -64,8 +67,31 @@ def unpack(
             raise InputError(
                 f"{source} is of another state: {name} is {found} there and {_type_of(leaf)} here"
             )
+        if not _is_restorable(leaf, held[name], arrays):
+            raise InputError(f"{source} is damaged: {name} does not hold what it says it does")
         leaves.append(_restore(leaf, held[name], arrays))
     return jax.tree.unflatten(jax.tree.structure(like), leaves)
+
+
+def _is_restorable(leaf: Any, entry: dict[str, Any], arrays: dict[str, np.ndarray]) -> bool:
+    """Tell whether what was kept is of the type and shape of `leaf`, whatever its entry says."""
+    if isinstance(leaf, bool | int | float):
+        return type(entry.get("value")) is type(leaf)
+    array = arrays.get(entry["name"])
+    if "value" in entry or array is None:
+        return False
+    if jnp.issubdtype(leaf.dtype, jax.dtypes.prng_key):
+        data = jax.eval_shape(jax.random.key_data, leaf)
+        if array.dtype != data.dtype or array.shape != data.shape:
+            return False
+        impl = entry.get("random_key")
+        return impl in KEYS and _key_type(data, impl) == leaf.dtype
+    plain = array.dtype == leaf.dtype or (array.dtype.str, leaf.dtype.itemsize) == ("|V2", 2)
+    return "random_key" not in entry and plain and array.shape == np.shape(leaf)
+
+
+def _key_type(data: Any, impl: str) -> Any:
+    return jax.eval_shape(lambda words: jax.random.wrap_key_data(words, impl=impl), data).dtype
 
 
 def _restore(leaf: Any, entry: dict[str, Any], arrays: dict[str, np.ndarray]) -> Any:

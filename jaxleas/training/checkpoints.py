@@ -9,12 +9,14 @@ of an .npz carries a checksum. Over truncated files orbax wrote 5,300 lines of t
 import json
 import logging
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
-from jaxleas.files import atomic_path
+from jaxleas.files import atomic_path, parse_json, sweep_temporaries
+from jaxleas.files.npz import DamagedError, read_arrays
 from jaxleas.training.checkpoint_leaves import pack, unpack
 from jaxleas.types.errors import InputError
 
@@ -23,8 +25,27 @@ State = TypeVar("State")
 _LOG = logging.getLogger("jaxleas")
 
 
+class NoCheckpointError(InputError):
+    """There is no checkpoint, or none that can be read."""
+
+
 class _DamageError(Exception):
     """A checkpoint file that cannot be read whole."""
+
+
+@dataclass(frozen=True)
+class PackedState:
+    """A state as it will be written: a copy, so that the training may go on meanwhile.
+
+    Attributes:
+        step: training steps done.
+        manifest: everything but the arrays, JSON.
+        arrays: by name.
+    """
+
+    step: int
+    manifest: bytes
+    arrays: dict[str, np.ndarray]
 
 
 class Checkpoints:
@@ -58,12 +79,27 @@ class Checkpoints:
         Raises:
             InputError: the file cannot be written (disk full, no permission).
         """
+        self.write(self.packed(step, state, note, best_score))
+
+    @staticmethod
+    def packed(
+        step: int, state: Any, note: dict[str, Any], best_score: float | None = None
+    ) -> PackedState:
+        """Return a copy of the state that `write` takes, maybe on another thread; see `save`."""
         entries, arrays = pack(state)
         manifest = {"format": FORMAT, "step": step, "score": best_score, "note": note}
-        text = json.dumps({**manifest, "leaves": entries}).encode()
-        with atomic_path(self._path(step)) as temporary, temporary.open("wb") as stream:
-            np.savez(stream, manifest=np.frombuffer(text, np.uint8), **arrays)  # type: ignore[arg-type]
-        self._prune(step)
+        return PackedState(step, json.dumps({**manifest, "leaves": entries}).encode(), arrays)
+
+    def write(self, packed: PackedState) -> None:
+        """Write what `packed` returned; see `save`.
+
+        Raises:
+            InputError: the file cannot be written (disk full, no permission).
+        """
+        manifest = np.frombuffer(packed.manifest, np.uint8)
+        with atomic_path(self._path(packed.step)) as temporary, temporary.open("wb") as stream:
+            np.savez(stream, manifest=manifest, **packed.arrays)  # type: ignore[arg-type]
+        self._prune(packed.step)
 
     def steps(self) -> list[int]:
         """Return the steps of which a checkpoint lies here, oldest first."""
@@ -72,14 +108,15 @@ class Checkpoints:
     def latest(self, like: State, partial: bool = False) -> tuple[int, State, dict[str, Any]]:
         """Return step, state and note of the newest checkpoint that can be read.
 
-        A damaged one is passed over; the log then says what was lost.
+        A damaged one is passed over; the log then says what was lost, in steps.
 
         Args:
             like: a pytree of the same structure, shapes and types (arrays or `jax.eval_shape`'s).
             partial: take only the leaves that `like` names; otherwise all must match.
 
         Raises:
-            InputError: there is no checkpoint, none can be read, or it is of another state.
+            NoCheckpointError: there is no checkpoint, or none can be read.
+            InputError: it is of another state.
         """
         return self._first_readable(self.steps()[::-1], like, partial)
 
@@ -104,11 +141,17 @@ class Checkpoints:
                 damages.append(f"{path.name} is damaged ({damage})")
                 continue
             if damages:
-                _LOG.warning("%s: the checkpoint of step %d is used", "; ".join(damages), step)
+                lost = max(max(steps) - step, 0)
+                _LOG.warning(
+                    "%s: the checkpoint of step %d is used, %d steps are lost and made again",
+                    "; ".join(damages),
+                    step,
+                    lost,
+                )
             state = unpack(like, manifest["leaves"], arrays, str(path), partial)
             return step, state, manifest["note"]
         what = "; ".join(damages) or "there is none"
-        raise InputError(f"no usable checkpoint in {self.folder}: {what}")
+        raise NoCheckpointError(f"no usable checkpoint in {self.folder}: {what}")
 
     def _ranked(self) -> list[int]:
         """Return the steps with a finite score, best first, of those whose manifest is readable."""
@@ -127,25 +170,42 @@ class Checkpoints:
         keep = {*ours[-self.keep_last :], *[s for s in self._ranked() if s <= newest][:1]}
         for step in set(self.steps()) - keep:
             self._path(step).unlink(missing_ok=True)
-        for leftover in self.folder.glob(".step_*.npz"):  # of a save that was killed
-            leftover.unlink(missing_ok=True)
+        sweep_temporaries(self.folder)  # of a save that was killed
 
     def _path(self, step: int) -> Path:
         return self.folder / f"step_{step:012d}.npz"
 
 
 def _read(path: Path, manifest_only: bool = False) -> tuple[Any, dict[str, np.ndarray]]:
-    """Return manifest and arrays; unlike an input file, a checkpoint may be of any size."""
+    """Return manifest and arrays; a checkpoint may be of any size, but unpacks to no more."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            manifest = json.loads(archive["manifest"].tobytes())
-            names = [] if manifest_only else archive.files
-            arrays = {name: archive[name] for name in names if name != "manifest"}
-    except Exception as error:  # a damaged archive fails in a dozen ways, not all documented
+        arrays = read_arrays(path, max_bytes=None, only="manifest" if manifest_only else None)
+        manifest = parse_json(arrays.pop("manifest").tobytes(), "its manifest")
+    except (DamagedError, KeyError, InputError) as error:
         raise _DamageError(ascii(str(error))[1:100]) from error
-    if manifest["format"] != FORMAT:
-        raise InputError(f"{path} is in format {manifest['format']}; this version reads {FORMAT}")
+    if not isinstance(manifest, dict) or manifest.get("format") != FORMAT:
+        found = manifest.get("format") if isinstance(manifest, dict) else None
+        raise InputError(f"{path} is in format {str(found)[:20]}; this version reads {FORMAT}")
+    if not _is_manifest(manifest):
+        raise _DamageError("its manifest is not that of a checkpoint")
     stated = {entry["name"] for entry in manifest["leaves"] if "value" not in entry}
     if not manifest_only and stated != arrays.keys():
         raise _DamageError("an array is missing")
     return manifest, arrays
+
+
+def _is_manifest(manifest: dict[str, Any]) -> bool:
+    leaves, score = manifest.get("leaves"), manifest.get("score")
+    return (
+        isinstance(leaves, list)
+        and all(
+            isinstance(leaf, dict)
+            and isinstance(leaf.get("name"), str)
+            and isinstance(leaf.get("type"), str)
+            and isinstance(leaf.get("random_key", ""), str)
+            and isinstance(leaf.get("value", 0), bool | int | float)
+            for leaf in leaves
+        )
+        and (score is None or (isinstance(score, int | float) and not isinstance(score, bool)))
+        and isinstance(manifest.get("note"), dict)
+    )

@@ -126,6 +126,13 @@ class HeldOutConfig(Strict):
     """A start that has not reached its goal by then has failed."""
 
 
+class CheckpointsConfig(Strict):
+    """Which of the states written at every examination are kept."""
+
+    keep_last: Count = 2
+    """The newest; the best by held-out success is always kept, too."""
+
+
 class FinalConfig(Strict):
     """What follows training: the verdict, the artifacts and the report."""
 
@@ -140,9 +147,12 @@ class RunConfig(Strict):
 
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Of everything random in training except the terrain."""
+    watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
+    """Who is told the metrics, beside metrics.jsonl; wandb and mlflow are extras."""
     terrain: TerrainConfig = TerrainConfig()
     env: SteeringConfig = SteeringConfig()
     network: NetworkConfig = NetworkConfig()
     ppo: PpoConfig = PpoConfig()
     held_out: HeldOutConfig = HeldOutConfig()
+    checkpoints: CheckpointsConfig = CheckpointsConfig()
     final: FinalConfig = FinalConfig()

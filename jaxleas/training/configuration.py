@@ -7,6 +7,7 @@ the file that this one extends, or on the command line.
 """
 
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,6 +23,7 @@ Model = TypeVar("Model", bound=Strict)
 # Where values come from, weakest first: (what to call it in a sentence, what it states).
 Layers = list[tuple[str, dict[str, Any]]]
 COMMAND_LINE = "command line"
+MAX_EXTENDED = 20
 
 
 def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] = ()) -> Model:
@@ -42,9 +44,9 @@ def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] =
     """
     layers = _layers(Path(path), ())
     wants_help = any(argument in ("--help", "-h") for argument in overrides)
-    if not wants_help:
+    if overrides and not wants_help:
         layers.append((COMMAND_LINE, _parse_overrides(model, overrides)))
-    config = _validate(model, layers)
+    config = validate(model, layers)
     if wants_help:
         print(help_text(model, config))
         raise SystemExit(0)
@@ -64,9 +66,25 @@ def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
     parent = stated.pop("extends", None)
     if parent is None:
         return [(str(path), stated)]
-    if not isinstance(parent, str):
-        raise InputError(f"{path}: extends is {parent!r}, but it should name one YAML file")
+    if not isinstance(parent, str) or "\0" in parent:
+        raise InputError(f"{path}: extends is {parent!r:.60}, but it should name one YAML file")
+    _require_below(path, parent)
+    if len(above) >= MAX_EXTENDED:
+        raise InputError(f"{path}: more than {MAX_EXTENDED} files extend one another")
     return [*_layers(path.parent / parent, (*above, path.resolve())), (str(path), stated)]
+
+
+def _require_below(path: Path, parent: str) -> None:
+    """Refuse to read a file outside the folder of the one that extends it: it may be a stranger's.
+
+    A link inside the folder is the owner's own doing.
+    """
+    folder = path.parent.absolute()
+    wanted = Path(os.path.normpath(folder / parent))
+    if Path(parent).is_absolute() or not wanted.is_relative_to(folder):
+        raise InputError(
+            f"{path}: extends is {parent!r:.200}, but it should lie in {path.parent} or below it"
+        )
 
 
 def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str, Any]:
@@ -82,7 +100,7 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
                 f"{COMMAND_LINE}: '{option}' stands alone; overrides look like --any.field VALUE"
             )
         if name not in fields:
-            raise InputError(f"{COMMAND_LINE}: there is no {option}{_hint(name, list(fields), 2)}")
+            raise InputError(f"{COMMAND_LINE}: there is no {option}{hint(name, list(fields), 2)}")
         if not equals:
             if not rest or rest[0].startswith("--"):
                 raise InputError(f"{COMMAND_LINE}: {option} needs a value: {option} VALUE")
@@ -93,21 +111,26 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
             raise InputError(f"{COMMAND_LINE}: {option} {text} is not YAML: {error}") from error
         for part in reversed(name.split(".")):
             value = {part: value}
-        stated = _merge(stated, value)
+        stated = merge(stated, value)
     return stated
 
 
-def _merge(below: Any, above: Any) -> Any:
+def merge(below: Any, above: Any) -> Any:
     """Return `below` with everything that `above` states put over it, key by key."""
     if not isinstance(below, dict) or not isinstance(above, dict):
         return above
-    return {**below, **{key: _merge(below.get(key), value) for key, value in above.items()}}
+    return {**below, **{key: merge(below.get(key), value) for key, value in above.items()}}
 
 
-def _validate(model: type[Model], layers: Layers) -> Model:
+def validate(model: type[Model], layers: Layers) -> Model:
+    """Return the configuration that layers state together, the weakest first.
+
+    Raises:
+        InputError: one sentence that names the layer, the key, and what would do.
+    """
     stated: dict[str, Any] = {}
     for _, layer in layers:
-        stated = _merge(stated, layer)
+        stated = merge(stated, layer)
     try:
         # Strict, as JSON: a list may become a tuple and a text a path, but "3" is never a number.
         return model.model_validate_json(json.dumps(stated, default=str), strict=True)
@@ -127,7 +150,7 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
     problem = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
     if error["type"] == "extra_forbidden":
         names = [field.name for field in fields_of(model)]
-        return f"{source}: there is no {name}{_hint(name, names)}"
+        return f"{source}: there is no {name}{hint(name, names)}"
     if error["type"] == "missing":
         return f"{source}: {name} is missing and has no default"
     if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once
@@ -145,7 +168,8 @@ def _states(layer: Any, parts: list[str]) -> bool:
     return True
 
 
-def _hint(name: str, names: list[str], dashes: int = 0) -> str:
+def hint(name: str, names: list[str], dashes: int = 0) -> str:
+    """Return the end of a sentence about an unknown field: the nearest of `names`, or all there."""
     close = nearest(name, names)
     if close is not None:
         return f"; perhaps you meant {'-' * dashes}{close}"

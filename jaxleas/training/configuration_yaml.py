@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from jaxleas.files import read_bytes
 from jaxleas.types.errors import InputError
 
 
@@ -27,8 +28,21 @@ class _Loader(yaml.SafeLoader):
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes what `_Loader` reads: a string that looks like `3e-4` is quoted."""
+    """Writes what `_Loader` reads: a string that looks like `3e-4` is quoted, nothing repeated."""
 
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+MAX_CHARACTERS = 1_000_000
+MAX_DEPTH = 50
+_OPENING = (
+    yaml.BlockMappingStartToken,
+    yaml.BlockSequenceStartToken,
+    yaml.FlowMappingStartToken,
+    yaml.FlowSequenceStartToken,
+)
+_CLOSING = yaml.FlowMappingEndToken | yaml.FlowSequenceEndToken
 
 # YAML 1.1 takes `3e-4` for a string, since it has no dot; nobody who writes it means one.
 _EXPONENT = re.compile(r"^[-+]?[0-9][0-9_]*[eE][-+]?[0-9]+$")
@@ -43,10 +57,29 @@ def parse_yaml(text: str) -> Any:
         ValueError: the text is not YAML, or gives one key twice.
     """
     try:
+        _require_plain(text)
         # A SafeLoader: it makes plain values and never runs anything.
         return yaml.load(text, Loader=_Loader)
     except (yaml.YAMLError, RecursionError, OverflowError, ValueError) as error:
         raise ValueError(_problem(error)) from error
+
+
+def _require_plain(text: str) -> None:
+    """Refuse what takes time or memory out of proportion, before any value is made of it.
+
+    Raises:
+        ValueError: an alias (which can stand for millions of values), or nesting too deep.
+    """
+    if len(text) > MAX_CHARACTERS:
+        raise ValueError(f"it is longer than {MAX_CHARACTERS} characters")
+    depth = 0
+    for token in yaml.scan(text, Loader=yaml.SafeLoader):
+        line = token.start_mark.line + 1
+        if isinstance(token, yaml.AliasToken | yaml.AnchorToken):
+            raise ValueError(f"anchors and aliases (& and *) are not read, as in line {line}")
+        depth += isinstance(token, _OPENING) - isinstance(token, yaml.BlockEndToken | _CLOSING)
+        if depth > MAX_DEPTH:
+            raise ValueError(f"it nests more than {MAX_DEPTH} deep in line {line}")
 
 
 def read_mapping(path: Path) -> dict[str, Any]:
@@ -58,9 +91,7 @@ def read_mapping(path: Path) -> dict[str, Any]:
     if not path.is_file():
         raise InputError(f"the configuration file {path} does not exist")
     try:
-        value = parse_yaml(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+        value = parse_yaml(read_bytes(path, 4 * MAX_CHARACTERS).decode("utf-8"))
     except ValueError as error:
         raise InputError(f"{path} is not a usable YAML file: {error}") from error
     if value is None:
@@ -79,9 +110,21 @@ def dump_yaml(value: dict[str, Any]) -> str:
 
 
 def _require_text_keys(value: Any, path: Path) -> None:
+    """Refuse keys that are no text, text that is no Unicode, and numbers that no field takes."""
+    if isinstance(value, str) and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError as error:
+            raise InputError(f"{path} holds text that is not Unicode: a lone surrogate") from error
+    if isinstance(value, list):
+        for inner in value:
+            _require_text_keys(inner, path)
+    if isinstance(value, int) and not -(2**63) <= value < 2**64:
+        raise InputError(f"{path} holds a whole number of more than 64 bits")
     for key, inner in value.items() if isinstance(value, dict) else ():
+        _require_text_keys(key, path)
         if not isinstance(key, str):
-            raise InputError(f"{path}: the key {key!r} is no name; write it in quotes")
+            raise InputError(f"{path}: the key {str(key)[:60]} is no name; write it in quotes")
         _require_text_keys(inner, path)
 
 

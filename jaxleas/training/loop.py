@@ -1,16 +1,19 @@
 """The training loop: update, log, examine, keep the state, and be ready to stop at any moment."""
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import jax
+import numpy as np
 from jax import Array
 
 from jaxleas.conditions import Condition, Foresight
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.training.background import Background
+from jaxleas.training.checkpoints import Checkpoints, NoCheckpointError
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.held_out import make_examination
@@ -23,10 +26,12 @@ from jaxleas.training.processes import any_process, from_first
 from jaxleas.training.progress import Progress
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, TrainState, initial_state
+from jaxleas.training.watching import require_watchers
 from jaxleas.training.worlds import held_out_world, training_world
-from jaxleas.types import JaxleasError
+from jaxleas.types import InputError, JaxleasError
 
 POLICY_FILE = "policy.npz"
+_LOG = logging.getLogger("jaxleas")
 
 
 class NonFiniteError(JaxleasError):
@@ -76,7 +81,7 @@ class Trainer:
         self.held_out = jax.device_put(held_out_world(config), devices.whole)
         networks = make_networks(config.network, self.env)
         self.train_step = jax.jit(
-            make_train_step(config, self.env, networks, devices.divide_robots),
+            make_train_step(config, self.env, devices.divide_robots),
             donate_argnums=1,
             in_shardings=(devices.whole, devices.state),
             out_shardings=(devices.state, devices.whole),
@@ -102,6 +107,7 @@ def train(
     devices: Devices | None = None,
     foresight: Foresight | None = None,
     learned: Learned | None = None,
+    on_examined: Callable[[], None] = lambda: None,
 ) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
@@ -115,6 +121,8 @@ def train(
         devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
         learned: to begin with, in place of fresh networks; a resumed run has its own.
+        on_examined: called when an examination's rows are in the run folder, its checkpoint on its
+            way; what it raises ends the training, and the folder can be gone on with.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -122,18 +130,28 @@ def train(
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
+        InputError: a watcher is not installed or not set up.
     """
+    require_watchers(config.watch)  # before minutes go into compiling
     trainer = Trainer(config, condition, devices or one_device(), foresight)
-    checkpoints = Checkpoints(run.checkpoints)
+    checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
+    best = _mended_best(trainer, run, checkpoints, best)
     total = config.ppo.updates * config.ppo.batch
     with (
-        MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(total, start=step) as progress,
+        MetricsLog(
+            run.path,
+            truncate_after_step=step if resuming else None,
+            watch=config.watch,
+            config=config.model_dump(mode="json"),
+            say=progress.say,
+        ) as log,
         Interruption() as interruption,
+        Background() as background,
     ):
-        desk = _Desk(trainer, run, checkpoints, log, progress, best)
+        desk = _Desk(trainer, run, checkpoints, log, progress, background, best, on_examined)
         _Session(trainer, interruption, desk).go_on(state)
     return read_policy(run.path / POLICY_FILE)
 
@@ -169,7 +187,7 @@ def _first_state(
     def look() -> str:
         nonlocal found
         if checkpoints is not None and checkpoints.steps():
-            found = checkpoints.latest(like)
+            found = _latest(checkpoints, like)
         return "fresh" if found is None else "resumed"
 
     if from_first(look) == "resumed":
@@ -182,6 +200,34 @@ def _first_state(
     if checkpoints is not None:
         checkpoints.save(0, kept, {"best": -1.0})
     return 0, state, -1.0
+
+
+def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:
+    """Return the newest state, or None where nothing but the very first was there and is lost."""
+    try:
+        return checkpoints.latest(like)
+    except NoCheckpointError as error:
+        if checkpoints.steps() != [0]:
+            raise
+        _LOG.warning("%s: no step had been done yet, so training begins anew", error)
+        return None
+
+
+def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, best: float) -> float:
+    """Make `policy.npz` again from the best checkpoint where it was damaged; return its score."""
+    if best < 0.0:
+        return best  # none was written yet
+    try:
+        read_policy(run.path / POLICY_FILE)
+    except InputError as damage:
+        try:
+            step, state, _ = checkpoints.best(jax.eval_shape(trainer.fresh_state))
+        except InputError as error:
+            _LOG.warning("%s; %s: the best policy from here on is kept", damage, error)
+            return -1.0
+        write_policy(run.path / POLICY_FILE, trainer.policy(state))
+        _LOG.warning("%s; it is made again from the checkpoint of step %d", damage, step)
+    return best
 
 
 @dataclass
@@ -254,7 +300,9 @@ class _Desk:
     checkpoints: Checkpoints
     log: MetricsLog
     progress: Progress
+    background: Background
     best: float
+    on_examined: Callable[[], None]
 
     def record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
         batch = self.trainer.config.ppo.batch
@@ -270,10 +318,23 @@ class _Desk:
         self.progress.update(rows[-1][0] * batch, shown)
 
     def save(self, state: TrainState, done: int, verdict: dict[str, float]) -> None:
+        """Have the state written, and the policy if it is the best; the training need not wait."""
         score = verdict.get("held_out/reached")
+        policy = None
         # Of equals the later: its learning rate was smaller and its average longer.
         if score is not None and score >= self.best:
             self.best = score
-            write_policy(self.run.path / POLICY_FILE, self.trainer.policy(state))
+            policy = jax.tree.map(np.array, self.trainer.policy(state))
         step = done * self.trainer.config.ppo.batch
-        self.checkpoints.save(step, state, {"best": self.best}, best_score=score)
+        packed = self.checkpoints.packed(step, state, {"best": self.best}, best_score=score)
+
+        def write() -> None:
+            if policy is not None:
+                write_policy(self.run.path / POLICY_FILE, policy)
+            # Rows first, so that no power cut leaves a checkpoint without them.
+            self.log.sync()
+            self.checkpoints.write(packed)
+
+        self.background.submit(write)
+        if verdict:
+            self.on_examined()

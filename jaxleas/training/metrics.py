@@ -1,19 +1,25 @@
-"""Metrics of a run: one JSON object a line, and the same numbers for TensorBoard."""
+"""Metrics of a run: one JSON object a line, and the same numbers for all who watch."""
 
 import json
+import logging
 import math
+import os
+import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from jaxleas.files import write_text
+from jaxleas.files import parse_json, write_text
+from jaxleas.training.watching import Audience, Status, open_watchers
 from jaxleas.types.errors import InputError
+
+_LOG = logging.getLogger("jaxleas")
 
 
 class MetricsLog:
-    """Appends to `metrics.jsonl` and `tensorboard/` in a run folder.
+    """Appends to `metrics.jsonl` in a run folder, and tells the same to all who watch.
 
     Append a step's metrics *before* saving its checkpoint: a run killed between the two then
     repeats the step, and its lines end the same as those of a run never killed. Only the wall time,
@@ -22,35 +28,40 @@ class MetricsLog:
     Args:
         folder: the run folder.
         truncate_after_step: when resuming, the step resumed from: later lines are dropped.
+        watch: watchers, by name; they never stop or slow a training.
+        config: of the run, as plain values, for the watchers.
+        say: told a sentence about a watcher that fails.
 
     Raises:
-        InputError: the file cannot be written.
+        InputError: the file cannot be written, or a watcher is not installed.
     """
 
-    def __init__(self, folder: str | Path, truncate_after_step: int | None = None) -> None:
-        # Slow to import and wanted only in training.
-        from tensorboardX import SummaryWriter
-
+    def __init__(
+        self,
+        folder: str | Path,
+        truncate_after_step: int | None = None,
+        watch: Sequence[str] = ("tensorboard",),
+        config: Mapping[str, Any] | None = None,
+        say: Callable[[str], None] = lambda sentence: print(sentence, file=sys.stderr),
+    ) -> None:
+        watchers = open_watchers(watch, folder)
         self.path = Path(folder) / "metrics.jsonl"
         kept: list[str] = []
-        purge = None
         if truncate_after_step is not None:
-            kept = [line for line, row in _rows(self.path) if row["step"] <= truncate_after_step]
-            purge = truncate_after_step + 1
+            kept = _rows_to_keep(self.path, truncate_after_step)
         write_text(self.path, "".join(kept))
         spent = json.loads(kept[-1])["seconds"] if kept else 0.0
         self._start = time.monotonic() - spent
         self._stream = self.path.open("a", encoding="utf-8")
-        self._board = SummaryWriter(
-            str(Path(folder) / "tensorboard"), purge_step=purge, flush_secs=10
-        )
+        self._audience = Audience(watchers, say)
+        self._audience.begin(config or {}, name_of(Path(folder)), truncate_after_step)
 
     def append(self, step: int, metrics: Mapping[str, float]) -> None:
         """Write one line; a number that is not finite is written as null.
 
         Args:
             step: training steps done.
-            metrics: by name; a slash groups them in TensorBoard.
+            metrics: by name; a slash groups them.
 
         Raises:
             InputError: the file cannot be written (disk full).
@@ -61,15 +72,25 @@ class MetricsLog:
         try:
             self._stream.write(json.dumps(row, allow_nan=False) + "\n")
             self._stream.flush()  # into the kernel: survives the death of this process
-            for name, value in numbers.items():
-                self._board.add_scalar(name, value, step)
+        except OSError as error:
+            raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
+        self._audience.row(int(step), numbers)
+
+    def sync(self) -> None:
+        """Have all lines on the disk; may be called from another thread.
+
+        Raises:
+            InputError: they cannot be written.
+        """
+        try:
+            os.fsync(self._stream.fileno())
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
 
-    def close(self) -> None:
-        """Close the files."""
+    def close(self, status: Status = "finished") -> None:
+        """Close the file; give the watchers a moment to finish."""
         self._stream.close()
-        self._board.close()
+        self._audience.end(status)
 
     def __enter__(self) -> Self:
         return self
@@ -80,7 +101,21 @@ class MetricsLog:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.close()
+        self.close(_status(error))
+
+
+def name_of(folder: Path) -> str:
+    """Return the name of a run for people: its folder, seen from here if it lies below."""
+    whole = folder.resolve()
+    here = Path.cwd()
+    return str(whole.relative_to(here)) if whole.is_relative_to(here) else whole.name
+
+
+def _status(error: BaseException | None) -> Status:
+    if error is None:
+        return "finished"
+    stopped = isinstance(error, KeyboardInterrupt) or getattr(error, "exit_code", None) == 130
+    return "interrupted" if stopped else "failed"
 
 
 def read_metrics(path: str | Path) -> list[dict[str, Any]]:
@@ -94,14 +129,54 @@ def read_metrics(path: str | Path) -> list[dict[str, Any]]:
     return [row for _, row in _rows(Path(path))]
 
 
+def _rows_to_keep(path: Path, last_step: int) -> list[str]:
+    """Return the lines up to a step; say so where a damaged line has cost some of them."""
+    rows, problem = _readable_rows(path)
+    kept = [(line, row["step"]) for line, row in rows if row["step"] <= last_step]
+    if problem and len(kept) == len(rows) and (not kept or kept[-1][1] < last_step):
+        first = kept[-1][1] if kept else 0
+        _LOG.warning("%s: the metrics of steps %d to %d are lost", problem, first, last_step)
+    return [line for line, _ in kept]
+
+
 def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Return each whole line, as it is and parsed."""
+    """Return each whole line, as it is and parsed.
+
+    Raises:
+        InputError: a line is no row.
+    """
+    rows, problem = _readable_rows(path)
+    if problem:
+        raise InputError(problem)
+    return rows
+
+
+def _readable_rows(path: Path) -> tuple[list[tuple[str, dict[str, Any]]], str]:
+    """Return the whole lines up to the first that is no row, and what is wrong with that one."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.is_file() else []
-        whole = [line for line in lines if line.endswith("\n")]
-        rows = [(line, json.loads(line)) for line in whole]
-        if all({"step", "seconds"} <= row.keys() for _, row in rows):
-            return rows
-    except (OSError, ValueError, AttributeError) as error:
-        raise InputError(f"{path} cannot be read: {error}") from error
-    raise InputError(f"{path} is damaged: a line lacks `step` or `seconds`")
+        content = path.read_bytes() if path.is_file() else b""
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    rows = []
+    for number, line in enumerate(content.splitlines(keepends=True), start=1):
+        if not line.endswith(b"\n"):
+            break  # only half written
+        try:
+            row = parse_json(line, f"{path}: line {number}")
+        except InputError as error:
+            return rows, str(error)
+        if not (isinstance(row, dict) and _is_row(row)):
+            return rows, (
+                f"{path} is damaged: line {number} lacks `step` or `seconds`, or holds other than"
+                " numbers"
+            )
+        rows.append((line.decode(), row))
+    return rows, ""
+
+
+def _is_row(row: dict[str, Any]) -> bool:
+    def is_number(value: Any) -> bool:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+
+    known = is_number(row.get("step")) and is_number(row.get("seconds"))
+    return known and all(value is None or is_number(value) for value in row.values())

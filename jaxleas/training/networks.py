@@ -1,5 +1,7 @@
 """Actor and critic: Brax's PPO networks over one of two normalisers."""
 
+from typing import Any
+
 import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
@@ -43,8 +45,17 @@ def initial_normaliser(config: NetworkConfig, env: SteeringEnv) -> Normaliser:
     """Return the normaliser before any data."""
     if config.normaliser == "running":
         return running_statistics.init_state(specs.Array((env.layout.size,), jnp.dtype("float32")))
-    mean, deviation = affine_scaling(env.layout.size, env.height_range, env.config.limits.max_speed)
-    return running_statistics.NestedMeanStd(mean=jnp.asarray(mean), std=jnp.asarray(deviation))
+    mean, deviation = scaling_of(env)
+    return running_statistics.NestedMeanStd(mean=mean, std=deviation)
+
+
+def scaling_of(env: SteeringEnv) -> tuple[Float[Array, " size"], Float[Array, " size"]]:
+    """Return mean and deviation of the affine normaliser of a task's observations."""
+    layout, max_speed = env.layout, env.config.limits.max_speed
+    mean, deviation = affine_scaling(
+        layout.size, env.height_range, max_speed, layout.counts_surfaces
+    )
+    return jnp.asarray(mean), jnp.asarray(deviation)
 
 
 def update_normaliser(
@@ -56,3 +67,22 @@ def update_normaliser(
             normaliser, observation, std_min_value=MIN_DEVIATION, std_max_value=1e6
         )
     return normaliser
+
+
+def layers_of(params: Any) -> list[tuple[Array, Array]]:
+    """Return kernel and bias of each layer of a network of Brax's, from the first to the last."""
+    layers = params["params"]
+    names = sorted(layers, key=lambda name: int(name.removeprefix("hidden_")))
+    return [(layers[name]["kernel"], layers[name]["bias"]) for name in names]
+
+
+def dense(params: Any, hidden: Float[Array, "*batch size"], activation: str) -> Array:
+    """Return what a network of Brax's answers to normalised observations."""
+    *inner, (kernel, bias) = layers_of(params)
+    for inner_kernel, inner_bias in inner:
+        hidden = ACTIVATION[activation](_affine(hidden, inner_kernel, inner_bias))
+    return _affine(hidden, kernel, bias)
+
+
+def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
+    return hidden @ kernel + bias.reshape((1,) * (hidden.ndim - 1) + bias.shape)

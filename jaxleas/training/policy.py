@@ -20,12 +20,13 @@ from jaxleas.envs.steering.config import MotionLimits, SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import scale_action
-from jaxleas.files import read_npz, write_npz
+from jaxleas.files import parse_json, read_npz, write_npz
 from jaxleas.training.brax_blocks import ACTIVATION
 from jaxleas.training.networks import MAX_NORMALISED, Normaliser
 from jaxleas.types import InputError
 
 FORMAT = 1
+MAX_BYTES = 2**28  # a policy of a quarter of a gigabyte is a mistake
 
 
 @struct.dataclass
@@ -112,9 +113,10 @@ def read_policy(path: str | Path) -> SteeringPolicy:
     Raises:
         InputError: the file is not a policy, is damaged, or is of another format.
     """
-    arrays = read_npz(path, required=("metadata", "mean", "deviation", "kernel_0", "bias_0"))
+    required = ("metadata", "mean", "deviation", "kernel_0", "bias_0")
+    arrays = read_npz(path, required, max_bytes=MAX_BYTES)
     try:
-        metadata = json.loads(str(arrays["metadata"]))
+        metadata = parse_json(str(arrays["metadata"]), f"{path}: its metadata")
         if metadata["format"] != FORMAT:
             raise InputError(
                 f"{path} is a policy of format {metadata['format']}; this version reads {FORMAT}"
@@ -129,7 +131,7 @@ def read_policy(path: str | Path) -> SteeringPolicy:
         raise InputError(f"{path}: config.{key} of its metadata: {first['msg']}") from error
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: its metadata is not a steering policy's: {error}") from error
-    count = sum(name.startswith("kernel_") for name in arrays)
+    count = _require_layers(path, arrays)
     policy = SteeringPolicy(
         mean=jnp.asarray(arrays["mean"]),
         deviation=jnp.asarray(arrays["deviation"]),
@@ -140,6 +142,19 @@ def read_policy(path: str | Path) -> SteeringPolicy:
     )
     _check_shapes(path, policy)
     return policy
+
+
+def _require_layers(path: str | Path, arrays: dict[str, np.ndarray]) -> int:
+    """Return the number of layers; refuse one without bias, and what is no finite number."""
+    count = sum(name.startswith("kernel_") for name in arrays)
+    layers = [f"{part}_{index}" for index in range(count) for part in ("kernel", "bias")]
+    for name in ("mean", "deviation", *layers):
+        array = arrays.get(name)
+        if array is None or array.dtype.kind != "f" or not np.isfinite(array).all():
+            raise InputError(f"{path}: {name} is missing, or holds what is no finite number")
+    if not (arrays["deviation"] > 0.0).all():
+        raise InputError(f"{path}: deviation must be positive")
+    return count
 
 
 def _check_shapes(path: str | Path, policy: SteeringPolicy) -> None:

@@ -9,14 +9,12 @@ checkpoints/      the last few full states and the best
 lock              held while a process writes
 """
 
-import fcntl
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from jaxleas.files import read_json, write_json, write_text
+from jaxleas.files import FolderLock, read_json, sweep_temporaries, write_json, write_text
 from jaxleas.training.provenance import collect_provenance
 from jaxleas.types.errors import InputError
 
@@ -30,7 +28,7 @@ class RunFolder:
         path: the folder.
     """
 
-    def __init__(self, path: Path, lock: int | None) -> None:
+    def __init__(self, path: Path, lock: FolderLock | None) -> None:
         self.path = path
         self._lock = lock
 
@@ -56,7 +54,7 @@ class RunFolder:
                 run = cls(path, lock)
                 run._write_records(config_yaml, command)
             except BaseException:
-                os.close(lock)
+                lock.close()
                 raise
         except OSError as error:
             raise InputError(
@@ -86,8 +84,10 @@ class RunFolder:
             _require_run(path, needs_checkpoint)
         except BaseException:
             if lock is not None:
-                os.close(lock)
+                lock.close()
             raise
+        if lock is not None:
+            sweep_temporaries(path)
         return cls(path, lock)
 
     @property
@@ -108,7 +108,7 @@ class RunFolder:
     def close(self) -> None:
         """Let other processes write."""
         if self._lock is not None:
-            os.close(self._lock)
+            self._lock.close()
             self._lock = None
 
     def __enter__(self) -> Self:
@@ -131,32 +131,13 @@ class RunFolder:
         write_json(self.path / "provenance.json", {"format": FORMAT, **provenance})
 
 
-def _take_lock(path: Path) -> int:
-    """Return a file descriptor that holds the folder until it is closed or the process ends."""
-    try:
-        descriptor = os.open(path / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-    except OSError as error:
-        raise InputError(f"cannot lock the run folder {path}: {error.strerror}") from error
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        os.ftruncate(descriptor, 0)
-        os.write(descriptor, f"{os.getpid()}\n".encode())
-    except BlockingIOError as error:
-        holder = os.pread(descriptor, 32, 0).decode().strip() or "unknown"
-        os.close(descriptor)
-        raise InputError(
-            f"the run folder {path} is in use by process {holder}; wait for it, stop it, or name "
-            "another --run-dir"
-        ) from error
-    except OSError as error:
-        os.close(descriptor)
-        raise InputError(f"cannot lock the run folder {path}: {error.strerror}") from error
-    return descriptor
+def _take_lock(path: Path) -> FolderLock:
+    return FolderLock(path, "the run folder", "name another --run-dir")
 
 
 def _require_vacant(path: Path) -> None:
     if (path / "config.yaml").exists() and (path / "lock").exists():
-        os.close(_take_lock(path))  # "in use" says more than "exists already"
+        _take_lock(path).close()  # "in use" says more than "exists already"
     if {entry.name for entry in path.iterdir()} - {"lock"}:
         raise InputError(
             f"{path} exists already and is not empty; go on with --resume {path}, or name another "

@@ -16,6 +16,7 @@ from jaxleas.envs.steering.world import World
 from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.networks import Normaliser, initial_normaliser
+from jaxleas.training.ppo_params import PpoParams
 from jaxleas.types import InputError
 
 
@@ -81,12 +82,18 @@ class Learned:
         )
 
 
-def make_optimiser(config: PpoConfig) -> optax.GradientTransformation:
-    """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4)."""
+def make_optimiser(config: PpoConfig, params: PpoParams) -> optax.GradientTransformation:
+    """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4).
+
+    Args:
+        config: how many gradient steps there will be.
+        params: learning rates and longest gradient, constants or traced.
+    """
     gradient_steps = config.updates * config.epochs * config.minibatches
-    rate = optax.linear_schedule(config.learning_rate, config.final_learning_rate, gradient_steps)
-    return optax.chain(
-        optax.clip_by_global_norm(config.max_gradient_norm), optax.adam(rate, eps=1e-5)
+    rate = optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
+    # On one vector: a few operations a step instead of a few for each layer.
+    return optax.flatten(
+        optax.chain(optax.clip_by_global_norm(params.max_gradient_norm), optax.adam(rate, eps=1e-5))
     )
 
 
@@ -101,10 +108,22 @@ def fresh_networks(
 
 
 def initial_state(
-    config: RunConfig, env: SteeringEnv, world: World, networks: PPONetworks
+    config: RunConfig,
+    env: SteeringEnv,
+    world: World,
+    networks: PPONetworks,
+    seed: Int[Array, ""] | None = None,
 ) -> TrainState:
-    """Return the state before the first update, from the run's seed alone."""
-    key = jax.random.key(config.seed)
+    """Return the state before the first update, from the run's seed alone.
+
+    Args:
+        config: of the run.
+        env: the task.
+        world: terrains to train on.
+        networks: actor and critic.
+        seed: in place of the configuration's: a population's members differ in it.
+    """
+    key = jax.random.key(config.seed if seed is None else seed)
     key, policy_key, value_key, pool_key, take_key, stagger_key = jax.random.split(key, 6)
     params = fresh_networks(networks, policy_key, value_key)
     count = config.ppo.environments
@@ -115,7 +134,7 @@ def initial_state(
     return TrainState(
         params=params,
         averaged=jax.tree.map(jnp.copy, params.policy),  # a copy: buffers are donated once
-        optimiser=make_optimiser(config.ppo).init(params),
+        optimiser=make_optimiser(config.ppo, PpoParams.of(config)).init(params),
         normaliser=initial_normaliser(config.network, env),
         episode=episode.replace(step=step),  # type: ignore[attr-defined]
         observation=observation,

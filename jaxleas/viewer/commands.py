@@ -186,6 +186,7 @@ def _drive(
     from jaxleas.guide.standing import choose_start, require_start
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.viewer.drive import Drive
+    from jaxleas.viewer.figure import look_at_start
     from jaxleas.viewer.walker import Walker
 
     loaded = [load_policy(each) for each in policies]
@@ -193,6 +194,7 @@ def _drive(
     place = (
         choose_start(envs[0], terrain) if start is None else require_start(envs[0], terrain, start)
     )
+    look_at_start(server, terrain, place)
     atlas = make_atlas([terrain])
     walkers = [
         Walker(_name(path), env, policy, atlas)

@@ -27,6 +27,8 @@ ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (15
 INVALID: Colour = (205, 40, 50)
 LIMBS: dict[str, Colour] = {"left": (200, 60, 60), "right": (220, 175, 40)}
 GOAL: Colour = (30, 150, 60)
+LARGEST_VIEW = 9.0
+"""Ground of more metres than this is not shown as a whole when robots are driven [m]."""
 LOW, HIGH = np.array([70.0, 30.0, 140.0]), np.array([255.0, 235.0, 40.0])
 """Colours of what the policy sees, from the lowest height that it can tell to the highest."""
 
@@ -82,14 +84,25 @@ def look_at_all(server: "ViserServer", terrain: HeightMap) -> None:
     rows, columns = np.nonzero(~np.isnan(terrain.heights))
     low = np.array([columns.min(), rows.min()]) * terrain.resolution + terrain.origin
     high = np.array([columns.max(), rows.max()]) * terrain.resolution + terrain.origin
-    middle, size = 0.5 * (low + high), float(np.max(high - low))
-    height = float(np.nanmedian(terrain.heights))
+    middle = np.append(0.5 * (low + high), np.nanmedian(terrain.heights))
     server.scene.set_up_direction("+z")
-    server.initial_camera.look_at = (middle[0], middle[1], height)
+    _look_at(server, middle, float(np.max(high - low)))
+
+
+def look_at_start(server: "ViserServer", terrain: HeightMap, start: Pose) -> None:
+    """On ground too large to make out a robot on it, place the camera near the start."""
+    x_min, x_max, y_min, y_max = terrain.extent
+    if max(x_max - x_min, y_max - y_min) > LARGEST_VIEW:
+        ahead = 0.2 * LARGEST_VIEW * np.array([np.cos(start.yaw), np.sin(start.yaw), 0.0])
+        _look_at(server, start.position + ahead - [0.0, 0.0, 1.0], LARGEST_VIEW)
+
+
+def _look_at(server: "ViserServer", middle: np.ndarray, size: float) -> None:
+    server.initial_camera.look_at = tuple(middle.tolist())
     server.initial_camera.position = (
         middle[0] - 0.1 * size,
         middle[1] - 0.5 * size - 1.0,
-        height + 0.45 * size + 0.8,
+        middle[2] + 0.45 * size + 0.8,
     )
 
 

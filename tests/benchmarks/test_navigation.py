@@ -6,7 +6,7 @@ from benchmarks.navigation import Row, cell, summary, within
 
 
 def row(pair, method, reached, waypoints, connections):
-    return Row(pair, method, reached, waypoints, connections, 0.1, 10.0, 100.0, 0)
+    return Row(pair, method, reached, waypoints, connections, 0.1, 10.0, 100.0)
 
 
 ROWS = [

@@ -65,6 +65,48 @@ def test_what_was_learned_is_read_and_carried_over(start):
     assert practice.ppo.steps == DistillationConfig().practice.steps
 
 
+def test_practice_may_ask_for_another_speed_and_reward(start):
+    config, _ = read_run(start)
+    changes = {"desired_speed": 0.12, "reward": {"direction": 12.0, "failure": 20.0}}
+    practice = practice_config(
+        DistillationConfig.model_validate({"practice": changes}), config, steps=4096
+    )
+    assert practice.env.desired_speed == 0.12
+    assert practice.ppo.steps == 4096
+    # Failing is as dear at the end as at the beginning.
+    assert practice.env.reward.failure == practice.ppo.final_failure == 20.0
+    kept = config.env.reward.model_dump() | {"direction": 12.0, "failure": 20.0}
+    assert practice.env.reward.model_dump() == kept
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("brax_ranks")
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_configurations_run_when_made_small(path, start, tmp_path):
+    """Every planner goes through a round: with practice before it, labels, fit and judgement."""
+    config = load_config(DistillationConfig, path)
+    small = {
+        "rounds": 1,
+        "collect": {"guides": 96, "steps": 60, "disturbances": [0.9]},
+        "fit": {"epochs": 1, "code": 8, "hidden": 4, "held_out": 0.5},
+        "judge": {"suites": ["hole"], "starts": 2},
+    }
+    practice = config.practice.model_dump() | {"steps": 640, "steps_before": 640}
+    parameters = config.parameters | ({"samples": 500} if config.planner == "sampling" else {})
+    shrunk = DistillationConfig.model_validate(
+        config.model_dump() | small | {"practice": practice, "parameters": parameters}
+    )
+    (tmp_path / "small.yaml").write_text(to_yaml(shrunk))
+    out = DistillationFolder(tmp_path / "out")
+    command = ["distill", str(tmp_path / "small.yaml"), "--out", str(out.path)]
+    cli.run([*command, "--start", str(start), "--processes", "1"])
+    observed = config.practice.observation or "thesis144"
+    assert read_policy(out.policy).config.observation == observed
+    identity = read_surrogate(out.surrogate).identity
+    assert (identity.planner, identity.observation) == (config.planner, observed)
+    assert [each["round"] for each in read_json(out.table)["rounds"]] == [0, 1]
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("brax_ranks")
 def test_it_goes_through_all_stages_and_goes_on_where_it_was_stopped(start, tmp_path, capsys):
@@ -117,6 +159,9 @@ def test_a_folder_is_begun_once_and_gone_on_with_as_it_was(start, tmp_path):
         ("planner: sampling\nparameters: {samples: 0}\n", "--samples 0"),
         ("planner: magic\n", "planner"),
         ("practice: {threshold: 1.0}\n", "threshold"),
+        ("practice: {reward: {distance: 1.0}}\n", "distance"),
+        ("practice: {observation: thesis143}\n", "observation"),
+        ("planner: sl1m\nparameters: {weights: learned}\n", "--weights learned"),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_is_left(tmp_path, yaml, sentence):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv, draw_starts, take
-from jaxleas.envs.steering.starts import restart_where
+from jaxleas.envs.steering.starts import draw_picks, restart_where
 from jaxleas.training.checkpoints import Checkpoints
 
 from .worlds import flat, height_map, world_of
@@ -53,9 +53,10 @@ def test_a_fresh_start_brings_a_fresh_memory(world):
     pool = draw_starts(env, world, jax.random.key(0), 64)
     state, _observation = take(pool, jax.random.key(1), 8)
     weights = RewardParams.of(env.config.reward)
-    state, outcome = env.step(world.atlas, weights, state, jnp.zeros((8, 4)))
+    state, _ = env.step(world.atlas, weights, state, jnp.zeros((8, 4)))
     done = jnp.arange(8) % 2 == 0
-    state, _ = restart_where(done, state, outcome.observation, pool, jax.random.key(2))
+    pick = draw_picks(pool, jax.random.key(2), done.shape)
+    state = restart_where(done, state, pool, pick)
     np.testing.assert_array_equal(state.memory["steps"], np.where(done, 0.0, 1.0))
     np.testing.assert_array_equal(state.memory["from"][::2], state.motion.position[::2])
 

@@ -5,7 +5,14 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv, draw_starts, restart_where, take
+from jaxleas.envs.steering import (
+    SteeringConfig,
+    SteeringEnv,
+    draw_picks,
+    draw_starts,
+    restart_where,
+    take,
+)
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
@@ -63,14 +70,13 @@ def test_everything_about_a_start_varies(env, arena_world):
 def test_no_start_is_replayed(env, arena_world):
     """Brax's own auto-reset restores one cached start for ever; ours never does."""
     done = jnp.ones(64, dtype=bool)
-    state, observation = take(
-        draw_starts(env, arena_world, jax.random.key(6), 256), jax.random.key(7), 64
-    )
+    state, _ = take(draw_starts(env, arena_world, jax.random.key(6), 256), jax.random.key(7), 64)
     seen = []
     for number in range(5):
         pool_key, take_key = jax.random.split(jax.random.key(100 + number))
         pool = draw_starts(env, arena_world, pool_key, 256)
-        state, observation = restart_where(done, state, observation, pool, take_key)
+        pick = draw_picks(pool, take_key, done.shape)
+        state = restart_where(done, state, pool, pick)
         seen.append(np.asarray(state.motion.position))
     for earlier, later in itertools.pairwise(seen):
         assert not np.any(np.all(earlier[:, None] == later[None], axis=-1))
@@ -81,10 +87,29 @@ def test_only_those_who_are_done_start_anew(env, arena_world):
     state, observation = take(pool, jax.random.key(9), 8)
     state = state.replace(step=jnp.full(8, 17, dtype=jnp.int32))
     done = jnp.array([True, False] * 4)
-    after, after_observation = restart_where(done, state, observation, pool, jax.random.key(10))
+    pick = draw_picks(pool, jax.random.key(10), done.shape)
+    after = restart_where(done, state, pool, pick)
     np.testing.assert_array_equal(after.step, np.where(done, 0, 17))
     np.testing.assert_array_equal(after.motion.position[1::2], state.motion.position[1::2])
-    np.testing.assert_array_equal(after_observation[1::2], observation[1::2])
+    np.testing.assert_array_equal(after.motion.yaw[::2], pool.state.motion.yaw[pick[::2]])
+    seen = np.where(done[:, None], pool.observation[pick], observation)
+    np.testing.assert_allclose(env.look(arena_world.atlas, after), seen, atol=1e-5)
+
+
+def test_every_valid_candidate_is_picked_alike_and_no_other(env, arena_world):
+    pool = draw_starts(env, arena_world, jax.random.key(8), 64)
+    count = int(pool.valid_count)
+    picks = np.asarray(draw_picks(pool, jax.random.key(1), (200, count)))
+    valid = np.flatnonzero(
+        env.condition(
+            env.local_heights(arena_world.atlas, pool.state.plan.map_index, pool.state.motion),
+            pool.state.motion,
+        )
+        >= 0.0
+    )
+    often = np.bincount(picks.ravel(), minlength=64)
+    assert set(np.flatnonzero(often)) == set(np.asarray(pool.order[:count])) <= set(valid)
+    assert np.all(np.abs(often[often > 0] - 200) < 6 * np.sqrt(200))
 
 
 def test_nobody_starts_over_the_void(env):

@@ -5,8 +5,9 @@ from jaxleas.evaluation.comparison import compare
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import load_candidate
 from jaxleas.evaluation.forecast import Forecast
+from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import read_evaluation
-from jaxleas.evaluation.side_by_side import markdown, published, rows
+from jaxleas.evaluation.side_by_side import markdown, rows
 from jaxleas.labels import Judge, MipSettings
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
@@ -135,6 +136,8 @@ def test_the_command_writes_and_prints_the_table(run, tmp_path, capsys, asked):
         evaluate(run, suite="hole", planners=["mip"], processes=0)
     with pytest.raises(InputError, match="time"):
         evaluate(run, suite="hole", planners=["mip"], starts=2, time_limit=-1.0)
+    with pytest.raises(InputError, match="--max-combinations -1"):
+        evaluate(run, suite="hole", planners=["sl1m"], starts=2, max_combinations=-1)
 
 
 def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):

@@ -36,6 +36,20 @@ def test_the_same_name_starts_and_seed_give_the_same_scenes(name):
     assert not all(same) or len(shifted) != len(vertices(one))
 
 
+def test_footsteps_are_those_cells_of_the_thesis_that_chapter_5_asks_about():
+    suite, thesis = make_suite("footsteps", 10), make_suite("thesis", 10)
+    same = {cell.key: cell for cell in thesis.cells}
+    assert {cell.name for cell in suite.cells} == {
+        "rubble",
+        "stairs_up",
+        "stairs_down",
+        "long_course",
+    }
+    for cell in suite.cells:
+        assert cell.yaw == 0.0
+        assert suite.steps_of(cell) == thesis.steps_of(same[cell.key])
+
+
 def test_no_seed_is_ever_trained_or_held_out_on():
     for seed in (0, 1, MAX_SEED - 1):
         seeds = scene_seeds(MAX_STARTS, seed)

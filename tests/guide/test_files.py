@@ -56,7 +56,10 @@ def test_queries_are_read(tmp_path):
         (json.dumps([changed(position=[0, None, 1])]), "position must be"),
         (json.dumps([changed(position=[1e300, 0, 1])]), "not within"),
         (json.dumps([changed(velocity=[1e9, 0, 0])]), "not within"),
-        ('[{"position": [0, 0, 1e999], "yaw": 0, "velocity": [0,0,0], "goal": [0,0]}]', "finite"),
+        (
+            '[{"position": [0, 0, 1e999], "yaw": 0, "velocity": [0,0,0], "goal": [0,0]}]',
+            "usable number",
+        ),
         ('[{"position": [0, 0, NaN], "yaw": 0, "velocity": [0,0,0], "goal": [0,0]}]', "NaN"),
         ("[", "not valid JSON"),
     ],

@@ -1,11 +1,14 @@
 """Workers on Ray: none lost, none twice; where Ray is not installed, a sentence says so."""
 
+import os
+import signal
 import sys
+from pathlib import Path
 
 import pytest
 
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import read_verdicts
+from jaxleas.labels import Here, label_shards, plan_shards, read_verdicts
 from jaxleas.labels.commands import label
 from jaxleas.labels.ray_workers import RayWorkers
 from jaxleas.terrain.scene import write_scene
@@ -58,3 +61,52 @@ def test_the_command_says_the_same_on_ray(tmp_path, capsys):
             [(each.success, each.last_index) for _, each in read_verdicts(tmp_path / workers)]
         )
     assert answers[0] == answers[1]
+
+
+@pytest.mark.slow
+def test_a_worker_killed_while_it_labels_costs_nothing_but_time(tmp_path):
+    """SIGKILL of the process that judges, on a real local cluster."""
+    ray = pytest.importorskip("ray", reason="the extra ray is not installed")
+    paths = [straight(0.4 + 0.05 * n) for n in range(24)]
+    write_guide_paths(tmp_path / "walks.npz", paths, ["reached"] * len(paths))
+    write_scene(tmp_path / "hole.json", hole())
+
+    def shards(out):
+        files = [tmp_path / "walks.npz"], tmp_path / "hole.json"
+        return plan_shards(*files, "sl1m", None, tmp_path / out, a_shard=2)
+
+    workers, killed = RayWorkers(2), []
+
+    def kill_one(_):
+        busy = [
+            pid
+            for pid in map(int, filter(str.isdigit, os.listdir("/proc")))
+            if b"ray::judge_shard" in _title(pid)
+        ]
+        if len(killed) < 3 and busy:
+            os.kill(busy[0], signal.SIGKILL)
+            killed.append(busy[0])
+
+    counted = []
+    try:
+        assert ray.is_initialized()
+        done = label_shards(
+            shards("killed"), workers, lambda count: (counted.append(count), kill_one(count))
+        )
+    finally:
+        workers.close()
+    label_shards(shards("whole"), Here(), lambda count: None)
+    assert killed
+    assert done == (24, 0)
+    assert sum(counted) == 24
+    found = [read_verdicts(tmp_path / out) for out in ("killed", "whole")]
+    killed_, whole = ([(v.path, v.success, v.last_index) for _, v in each] for each in found)
+    assert killed_ == whole
+    assert [path for path, _, _ in killed_] == list(range(24))
+
+
+def _title(pid: int) -> bytes:
+    try:
+        return (Path("/proc") / str(pid) / "cmdline").read_bytes()
+    except OSError:
+        return b""

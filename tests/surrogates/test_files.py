@@ -157,3 +157,37 @@ def test_fit_refuses_with_one_sentence(labelled, tmp_path, arguments, sentence):
     with pytest.raises(InputError, match=sentence):
         cli.run(["fit", *given, "--out", str(tmp_path / "s.npz")])
     assert not (tmp_path / "s.npz").exists()
+
+
+def changed(labelled, tmp_path, change):
+    """A copy of the labels, one file of them changed."""
+    import shutil
+
+    shutil.copytree(labelled / "verdicts", tmp_path / "verdicts")
+    for file in sorted((tmp_path / "verdicts").rglob("verdicts_*.json")):
+        content = read_json(file)
+        change(content)
+        write_json(file, content)
+        return tmp_path / "verdicts"
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda c: c["provenance"].update(robot="atlas"), "or on another robot, than"),
+        (lambda c: c.update(version=1), "verdict file of version 1; this version reads 2"),
+        (lambda c: c["verdicts"][0].pop("last_index"), "is no verdict file"),
+    ],
+)
+def test_labels_of_another_robot_or_version_are_refused(labelled, tmp_path, change, sentence):
+    with pytest.raises(InputError, match=sentence):
+        read_labels([changed(labelled, tmp_path, change)], [labelled], 0.1)
+
+
+def test_labels_are_of_the_policys_own_robot(labelled, tmp_path, monkeypatch):
+    import jaxleas.surrogates.label_files as label_files
+
+    monkeypatch.setattr(label_files, "_robot", lambda provenance: "atlas")
+    with pytest.raises(InputError, match="verdicts on atlas, but the policy is for talos"):
+        cli.run(["fit", str(labelled / "verdicts"), "--out", str(tmp_path / "s.npz")])
+    assert not (tmp_path / "s.npz").exists()

@@ -7,8 +7,10 @@ import pytest
 
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.training.config import RunConfig
+from jaxleas.training.learning import take_robots
+from jaxleas.training.loss import Experience
 from jaxleas.training.networks import make_networks
-from jaxleas.training.ppo import _mirror_half, make_train_step
+from jaxleas.training.ppo import make_train_step
 from jaxleas.training.train_state import initial_state
 
 from ..envs.worlds import flat, height_map, world_of
@@ -42,7 +44,7 @@ def run(condition=None, env=None, **ppo):
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat), height_map(flat, half_size=4.0))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks), donate_argnums=1)
+    step = jax.jit(make_train_step(config, steering), donate_argnums=1)
     history = []
     for _ in range(config.ppo.updates):
         state, metrics = step(world, state)
@@ -104,7 +106,7 @@ def test_running_statistics_learn_the_observation():
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks))
+    step = jax.jit(make_train_step(config, steering))
     for _ in range(3):
         state, metrics = step(world, state)
     assert all(bool(value) for name, value in metrics.items() if "finite/" in name)
@@ -114,34 +116,37 @@ def test_running_statistics_learn_the_observation():
 
 
 def test_mirroring_flips_whole_robots_and_twice_is_none():
-    from jaxleas.training.brax_blocks import Transition
-
     env = SteeringEnv(SteeringConfig())
     key = jax.random.key(0)
     shape = (5, 32)
-    batch = Transition(
+    batch = Experience(
         observation=jax.random.normal(key, (*shape, env.layout.size)),
-        action=(),
+        raw_action=jax.random.normal(key, (*shape, 4)),
+        location=jax.random.normal(key, (*shape, 4)),
+        deviation=jnp.ones((*shape, 4)),
         reward=jnp.zeros(shape),
-        discount=jnp.ones(shape),
-        next_observation=jax.random.normal(key, (1, 32, env.layout.size)),
-        extras={
-            "policy_extras": {
-                "raw_action": jax.random.normal(key, (*shape, 4)),
-                "log_prob": jnp.zeros(shape),
-                "distribution_params": jax.random.normal(key, (*shape, 8)),
-            },
-            "state_extras": {"truncation": jnp.zeros(shape)},
-        },
+        terminated=jnp.zeros(shape),
+        truncated=jnp.zeros(shape),
     )
-    once = _mirror_half(env, batch, jax.random.key(3))
-    twice = _mirror_half(env, once, jax.random.key(3))
-    jax.tree.map(np.testing.assert_array_equal, twice, batch)
-    flipped = np.any(np.asarray(once.observation != batch.observation), axis=(0, 2))
-    assert 8 < flipped.sum() < 24
-    sideways = np.asarray(once.extras["policy_extras"]["raw_action"][..., 1])
-    original = np.asarray(batch.extras["policy_extras"]["raw_action"][..., 1])
-    np.testing.assert_array_equal(sideways, np.where(flipped[None], -original, original))
+    last = jax.random.normal(key, (1, 32, env.layout.size))
+    flip = jax.random.bernoulli(jax.random.key(3), 0.5, (32,))
+    everybody = jnp.arange(32)
+    once = take_robots(env, batch, last[0], everybody, flip)
+    twice = take_robots(env, once[0], once[1][0], everybody, flip)
+    jax.tree.map(np.testing.assert_array_equal, twice, (batch, last))
+    some = jnp.array([7, 3, 30])
+    few = take_robots(env, batch, last[0], some, flip[some])
+    jax.tree.map(
+        lambda of_few, of_all: np.testing.assert_array_equal(of_few, of_all[:, some]), few, once
+    )
+    for before, after in ((batch.observation, once[0].observation), (last, once[1])):
+        np.testing.assert_array_equal(np.any(np.asarray(after != before), axis=(0, 2)), flip)
+        heights = np.asarray(before)[:, :, 4:].reshape(-1, 32, 10, 14)[..., ::-1]
+        expected = heights.reshape(-1, 32, 140)[:, flip]
+        np.testing.assert_array_equal(np.asarray(after)[:, flip, 4:], expected)
+    sideways = np.asarray(once[0].raw_action[..., 1])
+    original = np.asarray(batch.raw_action[..., 1])
+    np.testing.assert_array_equal(sideways, np.where(flip[None], -original, original))
 
 
 def test_the_train_step_compiles_once():
@@ -151,7 +156,7 @@ def test_the_train_step_compiles_once():
     steering = SteeringEnv(config.env)
     networks = make_networks(config.network, steering)
     world = world_of(height_map(flat))
-    step = make_train_step(config, steering, networks)
+    step = make_train_step(config, steering)
     traces = 0
 
     def counted(world, state):

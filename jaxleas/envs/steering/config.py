@@ -47,8 +47,9 @@ class SteeringConfig(Strict):
 
     robot: str = "talos"
     """Name of the robot."""
-    observation: Literal["thesis144", "icra81"] = "thesis144"
-    """Layout of the local height map: 10 x 14 (T table 3.1) or 11 x 7 (I sec. III)."""
+    observation: Literal["thesis144", "thesis145", "icra81"] = "thesis144"
+    """Layout of the local height map: 10 x 14 (T table 3.1), the same and the number of surfaces
+    around the robot (T 5.2.3), or 11 x 7 (I sec. III)."""
     height_low: float = -1.4
     """Heights are clipped from below here, z_min [m] relative to the root."""
     height_high: float = -0.2

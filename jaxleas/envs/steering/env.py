@@ -16,15 +16,19 @@ from jaxleas.conditions import (
     footprint_points,
     strict_reachability,
 )
+from jaxleas.conditions.collision import trunk_bottoms
+from jaxleas.conditions.footprint import is_under_root
 from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
+from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
-from jaxleas.envs.steering.observation import direction_to_goal, local_heights, observe
+from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, write_observation
 from jaxleas.envs.steering.reward import RewardParams, reward
-from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState
+from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState, Verdict
+from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import RootMotion
+from jaxleas.types.compute_once import compute_once
 
 
 class SteeringEnv:
@@ -67,17 +71,26 @@ class SteeringEnv:
         self.points_in_root = np.concatenate(
             [self.layout.points_in_root, footprint_points(self.robot)]
         )
-        self.condition = condition or all_of(
-            strict_reachability(self.robot, self.points_in_root),
-            collision(self.robot, self.points_in_root),
-        )
+        # What is looked at: places kept for the motion in the observation, then its grid.
+        self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
+        self.condition = condition or self._own_condition(self.points_in_root)
         self.foresight = foresight
+        # What a step is judged by: our own condition asks for few of the points.
+        self._judged, self._judge = self.points_in_root, self.condition
+        if condition is None and foresight is None:
+            points = self.points_in_root
+            matters = is_under_root(points) | np.isfinite(trunk_bottoms(self.robot, points))
+            self._judged = points[matters]
+            self._judge = self._own_condition(self._judged)
+
+    def _own_condition(self, points: np.ndarray) -> Condition:
+        return all_of(strict_reachability(self.robot, points), collision(self.robot, points))
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
     ) -> Float[Array, "*batch points"]:
         """Return the local terrain: heights at `points_in_root` relative to the root [m]."""
-        return local_heights(atlas, map_index, motion, self.points_in_root)
+        return atlas.heights_around(map_index, motion.position, motion.yaw, self.points_in_root)
 
     def observe(
         self,
@@ -87,7 +100,29 @@ class SteeringEnv:
     ) -> Float[Array, "*batch size"]:
         """Return the observation of a robot that seeks `goal` on this local terrain."""
         seen = heights_in_root[..., : len(self.layout.points_in_root)]
-        return observe(seen, motion, goal, self.height_range)
+        columns = jnp.pad(seen, [(0, 0)] * (seen.ndim - 1) + [(MOTION_SIZE, 0)])
+        return self._write(columns, *seen_motion(motion, goal))
+
+    def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
+        """Return what robots see: as `observe` of their local terrain, in one pass."""
+        motion = state.motion
+        return atlas.heights_around(
+            state.plan.map_index,
+            motion.position,
+            motion.yaw,
+            self._seen,
+            self._write,
+            *seen_motion(motion, self.goal(state)),
+        )
+
+    def _write(self, columns: Array, *seen: Array) -> Array:
+        """Return the observation of heights, behind places that are kept for the motion."""
+        observation = write_observation(columns, *seen, height_range=self.height_range)
+        if not self.layout.counts_surfaces:
+            return observation
+        heights, layout = columns[..., MOTION_SIZE:], self.layout
+        count = surface_count(heights, layout.rows, layout.columns, self.height_range)
+        return jnp.concatenate([observation, count[..., None]], axis=-1)
 
     def start(self, motion: RootMotion, plan: Plan, memory: Any = ()) -> SteeringState:
         """Return the state at the beginning of an episode.
@@ -111,6 +146,17 @@ class SteeringEnv:
         state: SteeringState,
         action: Float[Array, "*batch 4"],
     ) -> tuple[SteeringState, Outcome]:
+        """Advance one time step and look: `advance`, then `look`, with their arguments."""
+        after, verdict = self.advance(atlas, params, state, action)
+        return after, Outcome(**vars(verdict), observation=self.look(atlas, after))
+
+    def advance(
+        self,
+        atlas: Atlas,
+        params: RewardParams,
+        state: SteeringState,
+        action: Float[Array, "*batch 4"],
+    ) -> tuple[SteeringState, Verdict]:
         """Advance one time step (T eq. 3.3), judge the configuration and reward it.
 
         Args:
@@ -120,10 +166,16 @@ class SteeringEnv:
             action: the network's, in [-1, 1]^4.
         """
         config = self.config
-        command = scale_action(action, config.limits)
-        motion = integrate(state.motion, command, config.limits)
-        heights = self.local_heights(atlas, state.plan.map_index, motion)
-        margin = self.condition(heights, motion)
+
+        def move(motion: RootMotion, action: Array) -> tuple[Array, RootMotion]:
+            command = scale_action(action, config.limits)
+            return command, integrate(motion, command, config.limits)
+
+        command, motion = compute_once(move, atlas.always, state.motion, action)
+        heights = atlas.heights_around(
+            state.plan.map_index, motion.position, motion.yaw, self._judged
+        )
+        margin = self._judge(heights, motion)
         memory = state.memory
         if self.foresight is not None:
             foreseen, memory = self.foresight.follow(memory, heights, motion)
@@ -144,8 +196,7 @@ class SteeringEnv:
             step=state.step + 1,
             memory=memory,
         )
-        return after, Outcome(
-            observation=self.observe(heights, motion, self.goal(after)),
+        return after, Verdict(
             reward=gained,
             terminated=~valid,
             truncated=valid & (after.step >= config.episode_steps),

@@ -1,6 +1,6 @@
 """Where the policy looks: grids of points around the root, and what an observation holds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -16,17 +16,20 @@ class ObservationLayout:
 
     An observation is [velocity x, y, z in the root frame [m/s], angle to the goal [rad], heights
     of the grid points relative to the root [m], clipped], heights row by row from the rearmost to
-    the foremost, each row from right (y < 0) to left (y > 0).
+    the foremost, each row from right (y < 0) to left (y > 0); then, where the layout has it, the
+    number of surfaces around the root (`surface_count`).
 
     Attributes:
         name: of the layout, written into exported policies.
         rows: x of the grid's rows in the root frame, ascending [m].
         columns: y of the grid's columns in the root frame, ascending and symmetric [m].
+        counts_surfaces: whether the number of surfaces is seen.
     """
 
     name: str
     rows: tuple[float, ...]
     columns: tuple[float, ...]
+    counts_surfaces: bool = False
 
     @property
     def points_in_root(self) -> Float[np.ndarray, "points 2"]:
@@ -37,13 +40,14 @@ class ObservationLayout:
     @property
     def size(self) -> int:
         """Number of values in an observation."""
-        return MOTION_SIZE + len(self.rows) * len(self.columns)
+        return MOTION_SIZE + len(self.rows) * len(self.columns) + self.counts_surfaces
 
     @property
     def mirror_permutation(self) -> Int[np.ndarray, " size"]:
         """Order in which an observation's values reappear when left and right are swapped."""
         heights = np.arange(len(self.rows) * len(self.columns)).reshape(len(self.rows), -1)
-        return np.concatenate([np.arange(MOTION_SIZE), MOTION_SIZE + heights[:, ::-1].ravel()])
+        mirrored = [np.arange(MOTION_SIZE), MOTION_SIZE + heights[:, ::-1].ravel()]
+        return np.concatenate([*mirrored, np.arange(MOTION_SIZE + heights.size, self.size)])
 
     @property
     def mirror_sign(self) -> Float[np.ndarray, " size"]:
@@ -69,6 +73,9 @@ THESIS144 = ObservationLayout(
     columns=_cells(0.09, -7, 6),
 )
 
+# T sec. 5.2.3: for the planners that choose surfaces, their number around the robot besides.
+THESIS145 = replace(THESIS144, name="thesis145", counts_surfaces=True)
+
 # I sec. III-A: 9 rows ahead, 2 behind, 7 columns across.
 ICRA81 = ObservationLayout(
     name="icra81",
@@ -76,7 +83,7 @@ ICRA81 = ObservationLayout(
     columns=tuple(round(0.15 * index, 6) for index in range(-3, 4)),
 )
 
-_LAYOUTS = {layout.name: layout for layout in (THESIS144, ICRA81)}
+_LAYOUTS = {layout.name: layout for layout in (THESIS144, THESIS145, ICRA81)}
 
 ACTION_SIZE = 4  # acceleration in the root frame (3) and turn rate (1)
 MIRROR_ACTION_SIGN = np.array([1.0, -1.0, 1.0, -1.0], dtype=np.float32)

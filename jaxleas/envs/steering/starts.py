@@ -82,24 +82,32 @@ def take(
     pool: StartPool, key: Key[Array, ""], count: int
 ) -> tuple[SteeringState, Float[Array, "count size"]]:
     """Return the states and observations of `count` valid starts, drawn from the pool."""
-    rank = jax.random.randint(key, (count,), 0, jnp.maximum(pool.valid_count, 1))
-    index = pool.order[rank]
+    index = draw_picks(pool, key, (count,))
     return jax.tree.map(lambda leaf: leaf[index], (pool.state, pool.observation))
 
 
+def draw_picks(
+    pool: StartPool, key: Key[Array, ""], shape: tuple[int, ...]
+) -> Int[Array, "*shape"]:
+    """Return indices of valid candidates, each as likely as any other."""
+    return pool.order[jax.random.randint(key, shape, 0, jnp.maximum(pool.valid_count, 1))]
+
+
 def restart_where(
-    done: Bool[Array, " batch"],
-    state: SteeringState,
-    observation: Float[Array, "batch size"],
-    pool: StartPool,
-    key: Key[Array, ""],
-) -> tuple[SteeringState, Float[Array, "batch size"]]:
-    """Give a fresh start to the robots whose episode is over; leave the others alone."""
-    fresh_state, fresh_observation = take(pool, key, len(done))
-    return (
-        select(done, fresh_state, state),
-        jnp.where(done[:, None], fresh_observation, observation),
-    )
+    done: Bool[Array, " batch"], state: SteeringState, pool: StartPool, pick: Int[Array, " batch"]
+) -> SteeringState:
+    """Give a fresh start to the robots whose episode is over; leave the others alone.
+
+    Args:
+        done: whose episode is over.
+        state: of the episodes.
+        pool: fresh starts.
+        pick: which candidate each robot would get (`draw_picks`).
+    """
+    # The others look at candidate 0, all at the same one: it stays in the cache.
+    pick = jnp.where(done, pick, 0)
+    fresh = jax.tree.map(lambda leaf: leaf.at[pick].get(mode="promise_in_bounds"), pool.state)
+    return select(done, fresh, state)
 
 
 def _draw_motion(

@@ -50,11 +50,10 @@ class SteeringState:
 
 
 @struct.dataclass
-class Outcome:
+class Verdict:
     """What a step tells, beside the next state.
 
     Attributes:
-        observation: of the state reached [physical units]; the last one of an episode, too.
         reward: for the step.
         terminated: the configuration is invalid: the episode ends and nothing follows.
         truncated: the episode was cut while valid: its future has a value, only unseen.
@@ -62,9 +61,19 @@ class Outcome:
         reached: the goal sought during the step was reached.
     """
 
-    observation: Float[Array, "*batch size"]
     reward: Float[Array, "*batch"]
     terminated: Bool[Array, "*batch"]
     truncated: Bool[Array, "*batch"]
     margin: Float[Array, "*batch"]
     reached: Bool[Array, "*batch"]
+
+
+@struct.dataclass
+class Outcome(Verdict):
+    """A verdict, and what is seen after the step.
+
+    Attributes:
+        observation: of the state reached [physical units]; the last one of an episode, too.
+    """
+
+    observation: Float[Array, "*batch size"]

@@ -3,12 +3,20 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import jax
+import numpy as np
+from jaxtyping import Bool
+
 from jaxleas.conditions import exact_collision, exact_strict_reachability
+from jaxleas.guide.roadmaps.places import HEADINGS, Places
 from jaxleas.robots import Robot
 from jaxleas.terrain.mesh_scene import mesh_to_scene
 from jaxleas.terrain.meshes import SUFFIXES, Up
 from jaxleas.terrain.scene import Scene, read_scene
-from jaxleas.types import GuidePath
+from jaxleas.types import GuidePath, InputError, RootMotion
+
+NEAR = 0.1 * np.arange(1, 11)
+"""Distances at which a start that holds exactly is looked for [m]."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +57,10 @@ def scene_of(terrain: Path, up: Up = "z", scale: float = 1.0) -> Scene | None:
     return None
 
 
-def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
-    """Judge every configuration of a path by the exact twins of R* and C.
+def refusals(
+    robot: Robot, scene: Scene, path: GuidePath
+) -> tuple[Bool[np.ndarray, " T"], Bool[np.ndarray, " T"]]:
+    """Return which configurations of a path the exact twins of R* and of C refuse.
 
     Args:
         robot: that walks.
@@ -59,4 +69,60 @@ def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
     """
     reached = exact_strict_reachability(robot, scene.surfaces.values(), path.position, path.yaw)
     free = exact_collision(robot, scene.polygons, path.position, path.yaw)
-    return ExactVerdict(len(path), int((~reached).sum()), int((~free).sum()))
+    return ~reached, ~free
+
+
+def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
+    """Count the configurations of a path that the exact twins of R* and C refuse.
+
+    Args:
+        robot: that walks.
+        scene: whose surfaces carry, and whose polygons all block.
+        path: of the root.
+    """
+    unreachable, colliding = refusals(robot, scene, path)
+    return ExactVerdict(len(path), int(unreachable.sum()), int(colliding.sum()))
+
+
+def require_exact_start(places: Places, scene: Scene, start: RootMotion) -> None:
+    """Require that the exact conditions hold where a robot starts.
+
+    Args:
+        places: of the terrain.
+        scene: its polygons.
+        start: root motion, without a batch axis; valid on the height map.
+
+    Raises:
+        InputError: one does not; says which, and the nearest pose, on rings of 0.1 m, that is valid
+            by both.
+    """
+    x, y, _ = (float(each) for each in start.position)
+    yaw = float(start.yaw)
+    unreachable, colliding = _refused_at(places, scene, np.array([[x, y]]), np.array([yaw]))
+    if not (unreachable[0] or colliding[0]):
+        return
+    pairs = (("strict reachability R*", unreachable[0]), ("collision C", colliding[0]))
+    failing = " and ".join(name for name, fails in pairs if fails)
+    around = np.column_stack([np.cos(HEADINGS), np.sin(HEADINGS)])
+    near = np.concatenate([[x, y] + distance * around for distance in NEAR])
+    headings = np.full(len(near), yaw)
+    good = places.valid(near, headings)
+    good &= ~np.logical_or(*_refused_at(places, scene, near, headings))
+    hint = "none is valid within 1 m"
+    if good.any():
+        at = near[np.argmax(good)]
+        hint = f"the nearest valid pose is {at[0]:.2f},{at[1]:.2f},{yaw:.2f}"
+    raise InputError(
+        f"--from {x:g},{y:g} at yaw {yaw:.2f}: on the terrain's polygons {failing} fails there,"
+        f" though its height map allows it; {hint}"
+    )
+
+
+def _refused_at(
+    places: Places, scene: Scene, at: np.ndarray, yaw: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    motion = jax.tree.map(np.asarray, places.standing(at, yaw))
+    still = np.zeros(len(at))
+    valid = np.ones(len(at), bool)
+    poses = GuidePath(still, motion.position, motion.yaw, motion.velocity, valid)
+    return refusals(places.env.robot, scene, poses)

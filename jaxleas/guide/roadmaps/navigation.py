@@ -1,11 +1,12 @@
 """From start to goal by any steering method, with waypoints where it needs them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import networkx
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.guide.files import Reason
 from jaxleas.guide.roadmaps.budget import Budget
@@ -16,7 +17,11 @@ from jaxleas.guide.roadmaps.samples import Samples
 from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
 from jaxleas.types import GuidePath, RootMotion
 
+SHORTENINGS = 8
+"""Shorter ways that are tried, at most: each is walked as a whole."""
 PlannerName = Literal["rrt", "prm", "none"]
+Refused = Callable[[GuidePath], Bool[np.ndarray, " T"]]
+"""Tells which configurations of a path are refused after all."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +56,13 @@ class Navigator:
         connector: the steering method on its terrain.
         planner: that looks for waypoints; "none": the goal alone.
         reach: length of an edge of a tree at most [m].
+        refused: asked about every whole path: the exact conditions, where there are polygons.
     """
 
     connector: Connector
     planner: PlannerName
     reach: float
+    refused: Refused | None = None
 
     def navigate(
         self, start: RootMotion, goal: Float[np.ndarray, " 2"], budget: Budget, seed: int = 0
@@ -85,8 +92,7 @@ class Navigator:
             whole = self._followed(start, waypoints, budget)
             if whole.reached:
                 return self._shortened(start, whole, budget)
-            passed = passages(whole.path, waypoints, self.connector.radius)
-            failed = min(len(passed), len(waypoints) - 1)
+            failed = self._failed(whole, waypoints)
             ledger.banned.add((places[failed], places[failed + 1]))
             ledger.banned.add((places[failed + 1], places[failed]))
         return self._partial(ledger, start, goal, direct, budget)
@@ -118,11 +124,24 @@ class Navigator:
         jumps.add_edges_from(
             pair for pair, reached in zip(pairs, tried.reached, strict=True) if reached
         )
-        kept = networkx.shortest_path(jumps, 0, count)[1:]
-        if len(kept) == count:
-            return whole
-        shorter = self._followed(start, whole.waypoints[[j - 1 for j in kept]], budget)
-        return shorter if shorter.reached else whole
+        for _ in range(SHORTENINGS):
+            kept = networkx.shortest_path(jumps, 0, count)
+            if len(kept) > count:
+                break
+            waypoints = whole.waypoints[[j - 1 for j in kept[1:]]]
+            shorter = self._followed(start, waypoints, budget)
+            if shorter.reached:
+                return shorter
+            failed = self._failed(shorter, waypoints)
+            jumps.remove_edge(kept[failed], kept[failed + 1])
+            # Of the way that is known to work every step stays.
+            jumps.add_edges_from((i, i + 1) for i in range(count))
+        return whole
+
+    def _failed(self, walked: Navigation, waypoints: np.ndarray) -> int:
+        """Return on the way to which waypoint a walk over all of them failed."""
+        passed = passages(walked.path, waypoints, self.connector.radius)
+        return min(len(passed), len(waypoints) - 1)
 
     def _partial(
         self,
@@ -154,6 +173,8 @@ class Navigator:
 
     def _followed(self, start: RootMotion, waypoints: np.ndarray, budget: Budget) -> Navigation:
         path, reached, invalid = self.connector.follow(start, waypoints)
+        if self.refused is not None and (refused := self.refused(path)).any():
+            path, reached, invalid = until_refused(path, refused), False, True
         reason: Reason = "reached" if reached else "invalid" if invalid else "stopped"
         return Navigation(path, reason, waypoints, budget.used, round(budget.elapsed, 3))
 
@@ -188,11 +209,22 @@ def motion_at(path: GuidePath, index: int) -> RootMotion:
     return on_host(path.position[index], path.velocity[index], path.yaw[index])
 
 
+def until_refused(path: GuidePath, refused: Bool[np.ndarray, " T"]) -> GuidePath:
+    """Return a path up to the first refused configuration, which is marked as not valid."""
+    count = 1 + int(np.argmax(refused))
+    valid = path.valid[:count] & ~refused[:count]
+    return replace(_first(path, count), valid=valid)
+
+
 def part_towards(path: GuidePath, goal: Float[np.ndarray, " 2"]) -> GuidePath:
     """Return a path up to the valid configuration nearest to the goal; at least its first one."""
     valid = len(path) if path.valid.all() else max(1, int(np.argmin(path.valid)))
     offset = path.position[:valid, :2].astype(np.float64) - goal
-    count = 1 + int(np.argmin(np.hypot(*offset.T)))
+    return _first(path, 1 + int(np.argmin(np.hypot(*offset.T))))
+
+
+def _first(path: GuidePath, count: int) -> GuidePath:
+    """Return a path's first configurations."""
     return GuidePath(
         path.time[:count],
         path.position[:count],

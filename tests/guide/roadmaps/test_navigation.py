@@ -184,3 +184,22 @@ def test_places_keep_clear_of_what_they_are_asked_to():
     assert np.all((np.abs(x) > 0.6) | (y > 1.3))
     assert np.abs(drawn).max() < 2.9
     assert (x < 0).mean() == pytest.approx(0.5, abs=0.12)
+
+
+def test_what_the_exact_conditions_refuse_is_gone_round():
+    """A rail that no height map shows stands across the way that was found first."""
+    plain = kino_navigator(trench_map())
+    first = navigate(plain)
+    middle = first.path.position[len(first.path) // 2]
+
+    def refused(path):
+        return np.linalg.norm(path.position[:, :2] - middle[:2], axis=1) < 0.05
+
+    careful = navigate(replace(plain, refused=refused), connections=2000)
+    assert careful.reached
+    assert not refused(careful.path).any()
+    nowhere = replace(plain, refused=lambda path: path.position[:, 0] > 0.8)
+    lost = navigate(nowhere, connections=60)
+    assert lost.reason == "stopped"
+    assert lost.path.valid.all()
+    assert lost.path.position[:, 0].max() <= 0.8

@@ -116,3 +116,23 @@ def test_what_is_missing_is_told(terrain, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "ompl", None)
     with pytest.raises(JaxleasError, match="extra 'roadmaps'"):
         navigate(terrain, tmp_path / "out.npz")
+
+
+def test_a_start_inside_what_no_height_map_shows_is_refused(tmp_path):
+    """An upright sheet has no height of its own; the polygons know it."""
+    floor = np.array([[-3, -2, 0], [3, -2, 0], [3, 2, 0], [-3, 2, 0]], float)
+    sheet = np.array([[0, -1, 0.5], [0, 1, 0.5], [0, 1, 1.5], [0, -1, 1.5]], float)
+    write_scene(tmp_path / "sheet.json", Scene({"floor": floor}, {"sheet": sheet}))
+    ends = {"start": "0.05,0,0", "goal": "-2,0"}
+    with pytest.raises(InputError) as caught:
+        navigate(tmp_path / "sheet.json", tmp_path / "out.npz", "--planner", "none", **ends)
+    said = str(caught.value)
+    assert "--from 0.05,0 at yaw 0.00: on the terrain's polygons collision C fails" in said
+    assert not (tmp_path / "out.npz").exists()
+    there = said.split("the nearest valid pose is ")[1]
+    navigate(
+        *(tmp_path / "sheet.json", tmp_path / "out.npz", "--planner", "none"),
+        **ends | {"start": there},
+    )
+    (path,) = read_guide_paths(tmp_path / "out.npz").paths
+    assert path.valid[0]

@@ -1,0 +1,89 @@
+"""Policies, surrogates, checkpoints."""
+
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from benchmarks.strangers import binary_mutations as b
+from benchmarks.strangers.kinds import Kind, kind_of
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.layout import layout_named
+
+
+def learned_kinds(folder: Path) -> list[Kind]:
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.export.onnx_file import build_onnx
+    from jaxleas.guide.loading import load_policy
+    from jaxleas.guide.onnx_metadata import describe
+    from jaxleas.surrogates import Identity, Surrogate, read_surrogate, write_surrogate
+    from jaxleas.surrogates.features import MOTION_FEATURES
+    from jaxleas.surrogates.network import Weights
+    from jaxleas.training.checkpoints import Checkpoints
+    from jaxleas.training.policy import SteeringPolicy, write_policy
+
+    config = SteeringConfig(observation="icra81")
+    size, generator = layout_named(config.observation).size, np.random.default_rng(0)
+
+    def some(*shape: int) -> jax.Array:
+        return jnp.asarray(generator.normal(size=shape), jnp.float32)
+
+    policy = SteeringPolicy(
+        mean=some(size),
+        deviation=jnp.ones(size),
+        kernels=(some(size, 6), some(6, 8)),
+        biases=(some(6), some(8)),
+        activation="relu",
+        config=config,
+    )
+    write_policy(folder / "policy.npz", policy)
+    (folder / "policy.onnx").write_bytes(build_onnx(policy, describe(config)))
+    inputs, code, hidden = len(SteeringEnv(config).points_in_root) + MOTION_FEATURES, 5, 4
+    weights = Weights(
+        encoder=some(inputs, code),
+        encoder_bias=some(code),
+        gates=some(code + hidden, 2 * hidden),
+        gates_bias=some(2 * hidden),
+        candidate=some(code + hidden, hidden),
+        candidate_bias=some(hidden),
+        head=some(hidden),
+        head_bias=some(),
+    )
+    identity = Identity(
+        planner="sampling",
+        parameters={"keep_every": 5, "samples": 100},
+        robot=config.robot,
+        observation=config.observation,
+        height_low=config.height_low,
+        height_high=config.height_high,
+    )
+    write_surrogate(
+        folder / "surrogate.npz",
+        Surrogate(weights, jnp.ones(()), jnp.zeros(()), identity, {"guides": {}}),
+    )
+    state = {
+        "key": jax.random.key(0),
+        "w": some(3, 2),
+        "n": 3,
+        "rate": 0.5,
+        "half": some(2).astype(jnp.bfloat16),
+    }
+    checkpoints = Checkpoints(folder / "checkpoints")
+    checkpoints.save(7, state, {"best": 0.5}, 0.5)
+    (step,) = (folder / "checkpoints").glob("step_*.npz")
+
+    def walk(path: Path) -> None:
+        load_policy(path)(np.zeros((2, size), np.float32))
+
+    def restore(path: Path) -> None:
+        found = Checkpoints(path.parent)
+        found.latest(state)
+        found.best(state)
+
+    return [
+        kind_of("policy", folder / "policy.npz", walk, b.mutate_npz),
+        kind_of("ONNX policy", folder / "policy.onnx", walk, b.mutate_onnx),
+        kind_of("surrogate", folder / "surrogate.npz", read_surrogate, b.mutate_npz),
+        kind_of("checkpoint", step, restore, b.mutate_npz),
+    ]

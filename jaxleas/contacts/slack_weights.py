@@ -1,0 +1,54 @@
+"""Weights on SL1M's slacks: which surface of each step is preferred (T 5.3.4, as a prospect)."""
+
+import math
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.from_guide import BESIDE_ROOT, nearest_below
+from jaxleas.contacts.mixed_integer import Candidates
+from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.types import InputError
+
+SlackWeights = Literal["uniform", "guide"]
+
+
+def slack_weights(
+    problem: ContactProblem, candidates: Candidates, weights: SlackWeights
+) -> list[Float[np.ndarray, " c"]]:
+    """Return the weight of each candidate's slack, phase by phase.
+
+    "uniform" is SL1M as published. With "guide" the surface under the place where the foot would
+    stand beside the root weighs as much as all candidates of its step together: it is selected
+    wherever the step can be made onto it (an exact penalty), so that the guide path chooses.
+
+    Args:
+        problem: the contact problem.
+        candidates: of each phase.
+        weights: which.
+
+    Raises:
+        InputError: a phase has no root for the guide's choice.
+    """
+    rows = [np.ones(len(names)) for names in candidates]
+    if weights == "uniform":
+        return rows
+    for index, (row, names, phase) in enumerate(zip(rows, candidates, problem.phases, strict=True)):
+        if phase.root is None:
+            raise InputError(
+                f"phase {index} has no root, which slack weights by the guide need: ask for"
+                " uniform ones"
+            )
+        if len(names) > 1:
+            row[_preferred(problem, names, phase)] = len(names)
+    return rows
+
+
+def _preferred(problem: ContactProblem, names: tuple[str, ...], phase: Phase) -> int:
+    """Return the candidate nearest to the foot's place beside the root; of equals the highest."""
+    assert phase.root is not None
+    side = BESIDE_ROOT if phase.foot == "LF" else -BESIDE_ROOT
+    left = np.array([-math.sin(phase.yaw), math.cos(phase.yaw), 0.0])
+    found = [nearest_below(problem.surfaces[name], phase.root + side * left) for name in names]
+    return min(range(len(names)), key=lambda number: (found[number][1], -found[number][0][2]))

@@ -1,0 +1,124 @@
+"""Whole episodes, walked with exploration: what the faithful mode asks the exact planner about."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Bool, Float, Int, Key
+
+from jaxleas.distillation.collect import Walks
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.world import World
+from jaxleas.training.config import RunConfig
+from jaxleas.training.loss import action_distribution
+from jaxleas.training.networks import dense, normalise
+from jaxleas.training.ppo_params import PpoParams
+from jaxleas.training.train_state import TrainState
+
+Walk = Callable[[World, TrainState, Key[Array, ""]], Any]
+
+
+@dataclass(frozen=True)
+class Episodes:
+    """N episodes of at most T steps, on the host; steps after an episode's end mean nothing.
+
+    Attributes:
+        walks: the configurations, [N, T+1]: what a planner is asked about.
+        observation: before each step.
+        raw_action: before the tanh.
+        location: of the normal distribution that it was drawn from.
+        deviation: of that distribution.
+        reward: for each step.
+        terminated: the step met an invalid configuration (R*, C).
+        reached: the step reached a goal.
+        steps: of each episode, its last one included.
+        failure_cost: what an invalid configuration costs more than a valid one would have.
+        update: policy updates that the walking policy had seen.
+    """
+
+    walks: Walks
+    observation: Float[np.ndarray, "N T size"]
+    raw_action: Float[np.ndarray, "N T 4"]
+    location: Float[np.ndarray, "N T 4"]
+    deviation: Float[np.ndarray, "N T 4"]
+    reward: Float[np.ndarray, "N T"]
+    terminated: Bool[np.ndarray, "N T"]
+    reached: Bool[np.ndarray, "N T"]
+    steps: Int[np.ndarray, " N"]
+    failure_cost: float
+    update: int
+
+    def __len__(self) -> int:
+        """Return the number of episodes."""
+        return len(self.steps)
+
+
+def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
+    """Return the walk: fresh starts, then one whole episode each. It is pure; jit it.
+
+    Args:
+        config: of the run.
+        env: the task; its condition ends an episode, the exact planner is asked later.
+        robots: that walk at once.
+
+    Returns:
+        A function (world, state, key) -> arrays that `to_host` understands.
+    """
+    steps, numbers = config.env.episode_steps, PpoParams.of(config)
+
+    def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
+        pool_key, take_key, noise_key = jax.random.split(key, 3)
+        pool = draw_starts(env, world, pool_key, 2 * robots)
+        episode, observation = take(pool, take_key, robots)
+        progress = state.update.astype(jnp.float32) / config.ppo.updates
+        weights = numbers.reward_weights(progress)
+        noise = jax.random.normal(noise_key, (steps, robots, env.action_size))
+
+        def advance(carry, noise_now):
+            episode, observation, walking = carry
+            normalised = normalise(observation, state.normaliser)
+            location, deviation = action_distribution(
+                dense(state.params.policy, normalised, config.network.activation)
+            )
+            raw_action = location + deviation * noise_now
+            after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))
+            terminated = walking & outcome.terminated
+            record = {
+                "observation": observation,
+                "raw_action": raw_action,
+                "location": location,
+                "deviation": deviation,
+                "reward": outcome.reward,
+                "terminated": terminated,
+                "reached": walking & outcome.reached,
+                "walked": walking,
+            }
+            valid = walking & ~outcome.terminated
+            ended = outcome.terminated | outcome.truncated
+            return (after, outcome.observation, walking & ~ended), (record, after.motion, valid)
+
+        everyone = jnp.ones(robots, dtype=bool)
+        _, (record, motion, valid) = jax.lax.scan(advance, (episode, observation, everyone), noise)
+        whole = jax.tree.map(
+            lambda first, later: jnp.concatenate([first[None], later]),
+            (episode.motion, everyone),
+            (motion, valid),
+        )
+        robot_first = jax.tree.map(lambda leaf: jnp.swapaxes(leaf, 0, 1), (record, whole))
+        cost = weights.alive + weights.failure
+        return robot_first, episode.plan.map_index, cost, state.update
+
+    return walk
+
+
+def to_host(walked: Any) -> Episodes:
+    """Return what a walk made, once the device is done with it."""
+    (record, (motion, valid)), map_index, cost, update = jax.device_get(walked)
+    walks = Walks(motion, valid, map_index)
+    steps = record.pop("walked").sum(axis=1)
+    return Episodes(walks, steps=steps, failure_cost=float(cost), update=int(update), **record)

@@ -1,0 +1,165 @@
+"""Faithful mode, the thesis's own: the exact planner in the loop (T 3.3.3, fig. 3.11b).
+
+The policy walks waves of whole episodes on the device; workers judge their guide paths while it
+walks on; failed tails are cut; PPO learns from what is left. What the device walks is at most
+`ahead` waves old, and verdicts are taken in the order of the walks, whoever answers first: so a run
+that nobody interrupts is as reproducible as its planner.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from jaxleas.distillation.config import FaithfulConfig
+from jaxleas.distillation.cutting import Stream, cut, to_experience
+from jaxleas.distillation.episodes import Episodes, make_walk, to_host
+from jaxleas.distillation.faithful_metrics import Tally, batch_metrics
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.world import World
+from jaxleas.labels import Judge, Verdict
+from jaxleas.terrain.scene import Scene
+from jaxleas.training.config import RunConfig
+from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.ppo import make_update
+from jaxleas.training.ppo_params import PpoParams
+from jaxleas.training.train_state import Learned, TrainState, fresh_networks, make_optimiser
+
+Wave = tuple[Episodes, list[Verdict]]
+
+
+@dataclass
+class Faithful:
+    """The pieces of one faithful training.
+
+    Attributes:
+        config: of the run.
+        faithful: how much is walked at once, and how far ahead.
+        env: the task.
+        world: terrains to train on.
+        scenes: the same, exactly.
+        judge: the exact planner, over its workers.
+        stream: accepted steps that wait to be learned from.
+        tally: what has been walked and judged since the last update.
+    """
+
+    config: RunConfig
+    faithful: FaithfulConfig
+    env: SteeringEnv
+    world: World
+    scenes: tuple[Scene, ...]
+    judge: Judge
+    stream: Stream = field(init=False)
+    tally: Tally = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.networks = make_networks(self.config.network, self.env)
+        robots = self.faithful.robots
+        self._walk = jax.jit(make_walk(self.config, self.env, robots))
+        self._update = jax.jit(make_update(self.config, self.env))
+        self._empty()
+
+    def _empty(self) -> None:
+        self.stream = Stream(self.config.ppo.environments, self.config.ppo.unroll)
+        self.tally = Tally()
+
+    def fresh_state(self, learned: Learned | None) -> TrainState:
+        """Return the state before the first update.
+
+        Args:
+            learned: to begin with, in place of fresh networks.
+
+        Raises:
+            InputError: the networks to begin with are of other sizes.
+        """
+        key, policy_key, value_key = jax.random.split(jax.random.key(self.config.seed), 3)
+        params = fresh_networks(self.networks, policy_key, value_key)
+        state = TrainState(
+            params=params,
+            averaged=params.policy,
+            optimiser=make_optimiser(self.config.ppo, PpoParams.of(self.config)).init(params),
+            normaliser=initial_normaliser(self.config.network, self.env),
+            episode=(),  # type: ignore[arg-type]  (no episode outlasts its wave)
+            observation=(),  # type: ignore[arg-type]
+            key=key,
+            update=jnp.int32(0),
+        )
+        return state if learned is None else learned.into(state)
+
+    def run(
+        self,
+        state: TrainState,
+        on_update: Callable[[TrainState, dict[str, Any]], None],
+        asked_to_stop: Callable[[], bool] = lambda: False,
+        on_wave: Callable[[TrainState, int], None] = lambda state, waiting: None,
+    ) -> TrainState:
+        """Walk, judge and learn until `ppo.updates` updates are done, or until asked to stop.
+
+        What is in flight then is given up: walked, perhaps judged, and not learned from.
+
+        Args:
+            state: to go on from.
+            on_update: told state and metrics after each update.
+            asked_to_stop: asked after each wave and update.
+            on_wave: told state and steps that wait to be learned from, after each judged wave.
+
+        Returns:
+            The state after the last update.
+        """
+        self._empty()
+        bench = ThreadPoolExecutor(1, thread_name_prefix="exact-planner")
+        flying: deque[Future[Wave]] = deque()
+        try:
+            while not self._is_over(state) and not asked_to_stop():
+                batch = self.stream.batch()
+                if batch is not None:
+                    state, metrics = self.learn(state, batch)
+                    on_update(state, metrics)
+                    continue
+                while len(flying) <= self.faithful.ahead:
+                    key, walk_key = jax.random.split(state.key)
+                    walked = self._walk(self.world, state, walk_key)
+                    state = state.replace(key=key)  # type: ignore[attr-defined]
+                    flying.append(bench.submit(self._ask, walked))
+                episodes, verdicts = flying.popleft().result()
+                self.tally.count(episodes, verdicts)
+                self.stream.add(cut(episodes, verdicts))
+                on_wave(state, len(self.stream))
+            return state
+        finally:
+            bench.shutdown(wait=True, cancel_futures=True)
+
+    def _is_over(self, state: TrainState) -> bool:
+        return int(state.update) >= self.config.ppo.updates
+
+    def learn(
+        self, state: TrainState, batch: dict[str, np.ndarray]
+    ) -> tuple[TrainState, dict[str, Any]]:
+        """Return the state after one update, and its metrics."""
+        ppo = self.config.ppo
+        key, learn_key = jax.random.split(state.key)
+        walked = batch_metrics(batch, int(state.update)) | self.tally.take()
+        experience, after = to_experience(batch, ppo.environments, ppo.unroll)
+        state, learned = self._update(state, experience, after, learn_key)
+        return state.replace(key=key), walked | jax.device_get(learned)  # type: ignore[attr-defined]
+
+    def _ask(self, walked: Any) -> Wave:
+        """Wait for a wave to be walked, and let the workers judge it: in the bench's thread."""
+        episodes = to_host(walked)
+        paths = episodes.walks.paths(self.env.config.limits.time_step)
+        return episodes, self.judge.judge(self.scenes, paths, episodes.walks.map_index)
+
+
+def staleness_bound(config: RunConfig, faithful: FaithfulConfig) -> int:
+    """Return how many updates may lie between a step's walk and its being learned from, at most.
+
+    Before a wave's last step is learned from, at most `ahead` waves that flew before it, the wave
+    itself and what waited for a full batch are: each fills a batch and so an update.
+    """
+    wave = faithful.robots * config.env.episode_steps
+    return ((faithful.ahead + 1) * wave + config.ppo.batch) // config.ppo.batch

@@ -1,0 +1,142 @@
+"""The report of a distilled run: one HTML file, from the files of its folder alone."""
+
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.distillation.report_data import RunData, best_round, read_run_data
+from jaxleas.distillation.report_pictures import draw_calibration, draw_learning, draw_rounds
+from jaxleas.evaluation.figure_pictures import draw_figures
+from jaxleas.evaluation.published import thesis
+from jaxleas.evaluation.report import inline
+from jaxleas.evaluation.side_by_side import PLANNER_TITLES
+from jaxleas.evaluation.side_by_side import headings as side_headings
+from jaxleas.evaluation.side_by_side import rows as side_rows
+from jaxleas.evaluation.table import cell_title, percent
+from jaxleas.evaluation.thesis_tables import thesis_tables
+from jaxleas.files import write_text
+from jaxleas.training.configuration import load_config
+
+TEMPLATE = "distilled.html"
+LEARNING = {"sampling": "4.7", "mip": "5.5"}
+
+
+def write_distilled_report(run: Path, out: Path | None = None) -> Path:
+    """Write the report of a distilled run; the same files give the same bytes.
+
+    Args:
+        run: the distillation's folder.
+        out: where to write it; by default RUN/report.html.
+
+    Raises:
+        InputError: no round is finished, or a file of the folder cannot be read.
+    """
+    config = load_config(DistillationConfig, DistillationFolder(run).config)
+    data = read_run_data(run, config.planner)
+    target = run / "report.html" if out is None else out
+    write_text(target, render(data, config))
+    return target
+
+
+def render(data: RunData, config: DistillationConfig) -> str:
+    """Return the report's HTML: images inline, nothing fetched, no scripts."""
+    from jinja2 import Environment, StrictUndefined
+
+    text = resources.files("jaxleas.distillation").joinpath(TEMPLATE).read_text(encoding="utf-8")
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    figures = draw_figures(data.figures) if data.figures is not None else []
+    best = best_round(data.rounds)
+    return environment.from_string(text).render(
+        name=data.path.resolve().name,
+        planner=PLANNER_TITLES[config.planner],
+        mode=config.mode,
+        headlines=headlines(data, config),
+        starts=config.judge.starts,
+        best=best["round"],
+        rounds=round_table(data),
+        rounds_picture=inline(draw_rounds(data.rounds)),
+        surrogates=surrogate_table(data),
+        confusions=confusion_tables(best["surrogate"]),
+        calibration=inline(draw_calibration(best["surrogate"])) if best["surrogate"] else None,
+        labels=data.labels,
+        percent=percent,
+        learning=inline(draw_learning(data.start, data.practice)) if data.practice else None,
+        learned=thesis().figures.get(LEARNING.get(config.planner, ""), ""),
+        tables=[table for table in thesis_tables(data.evaluations) if not table.is_empty],
+        sides=[
+            (each, side_headings(each), side_rows(each))
+            for each in data.evaluations
+            if any(cell.planner for cell in each.cells)
+        ],
+        figures=[(each.name, each.caption, inline(each.png)) for each in figures],
+        missing=data.missing,
+        source=thesis().source,
+        config=(data.path / "config.yaml").read_text(encoding="utf-8"),
+    )
+
+
+def headlines(data: RunData, config: DistillationConfig) -> list[tuple[str, str]]:
+    """Return the few numbers that matter: (number, what it says)."""
+    first, best = data.rounds[0], best_round(data.rounds)
+    cells = len(best["cells"])
+    guides = cells * config.judge.starts
+    words = f"of {guides} starts in {cells} cells, judged exactly on held-out scenes"
+    worst = min(best["cells"], key=best["cells"].__getitem__)
+    minutes = sum(sum(row["seconds"].values()) for row in data.rounds) / 60
+    numbers = [
+        (percent(best["success"]), f"{words}: round {best['round']}, the best of all"),
+        (percent(first["success"]), "likewise, the policy begun with"),
+        (percent(best["cells"][worst]), f"in its worst cell, {cell_title(worst)}"),
+        (f"{minutes:.0f} min", f"for {len(data.rounds) - 1} rounds"),
+    ]
+    if labels := sum(each.guides for each in data.labels):
+        numbers.append((f"{labels:,}", "guide paths judged to learn from"))
+    return numbers
+
+
+def round_table(data: RunData) -> dict[str, Any]:
+    """Return the table of all rounds, as text."""
+    names = list(data.rounds[0]["cells"])
+    return {
+        "columns": ["round", "labels", "minutes", *map(cell_title, names), "mean"],
+        "rows": [
+            [
+                str(row["round"]),
+                f"{row['labels']:,}",
+                f"{sum(row['seconds'].values()) / 60:.1f}",
+                *(percent(row["cells"].get(name)) for name in names),
+                percent(row["success"]),
+            ]
+            for row in data.rounds
+        ],
+    }
+
+
+def surrogate_table(data: RunData) -> list[list[str]]:
+    """Return what each round's surrogate is worth, by stretch and guide path, as text."""
+    table = []
+    for row in data.rounds:
+        for name in ("stretch", "guide") if row["surrogate"] else ():
+            part = row["surrogate"][name]
+            table.append(
+                [
+                    str(row["round"]),
+                    name,
+                    f"{part['count']:,}",
+                    f"{part['failed']:,}",
+                    percent(part["balanced_accuracy"]),
+                    f"{part['area_under_curve']:.3f}",
+                    percent(part["calibration_error"], 2),
+                    f"{part['log_loss']:.4f} ({part['log_loss_of_the_share']:.4f})",
+                ]
+            )
+    return table
+
+
+def confusion_tables(report: dict[str, Any] | None) -> list[tuple[str, dict[str, Any]]]:
+    """Return the confusion tables of a surrogate, by stretch and by guide path."""
+    return [(name, report[name]["confusion"]) for name in ("stretch", "guide")] if report else []

@@ -1,0 +1,186 @@
+"""What a distilled run's folder says of itself: read from files alone, for its report."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.evaluation.figure_file import Figures, read_figures
+from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
+from jaxleas.files import read_json
+from jaxleas.training.metrics import read_metrics
+from jaxleas.types.errors import InputError
+
+BEGUN_WITH = "begun_with.json"
+FIGURES = "figures.json"
+MOST_REASONS = 3
+
+
+@dataclass(frozen=True)
+class LabelCount:
+    """Verdicts of one round.
+
+    Attributes:
+        round: its number.
+        guides: guide paths judged.
+        passed: of them, those that the planner got through.
+        undecided: of them, those without a verdict in time.
+        seconds: planning, mean a guide path.
+        reasons: the most frequent ones of failure, with their counts.
+    """
+
+    round: int
+    guides: int
+    passed: int
+    undecided: int
+    seconds: float
+    reasons: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True)
+class Missing:
+    """Something that a report would show, and how to make it."""
+
+    what: str
+    command: str
+
+
+@dataclass
+class RunData:
+    """All that a distilled run's report is made of.
+
+    Attributes:
+        path: of the run.
+        rounds: rows of rounds.json.
+        judged: cells of each round, by number.
+        labels: verdicts of each round.
+        start: rows of the first training's metrics; none where it is not at hand.
+        practice: rows of each round's metrics, in order.
+        evaluations: of suites, from RUN/evaluation.
+        figures: from RUN/evaluation/figures.json.
+        missing: what was not there.
+    """
+
+    path: Path
+    rounds: list[dict[str, Any]]
+    judged: dict[int, list[CellResult]] = field(default_factory=dict)
+    labels: list[LabelCount] = field(default_factory=list)
+    start: list[dict[str, Any]] = field(default_factory=list)
+    practice: list[list[dict[str, Any]]] = field(default_factory=list)
+    evaluations: list[Evaluation] = field(default_factory=list)
+    figures: Figures | None = None
+    missing: list[Missing] = field(default_factory=list)
+
+
+def is_distilled(run: Path) -> bool:
+    """Tell whether a folder is a distillation's."""
+    return (run / BEGUN_WITH).is_file()
+
+
+def read_run_data(run: Path, planner: str) -> RunData:
+    """Read what is there; what is not is listed in `missing`.
+
+    Args:
+        run: the folder.
+        planner: its planner, for the commands that make what is missing.
+
+    Raises:
+        InputError: a file is there but cannot be read, or no round has been finished.
+    """
+    folder = DistillationFolder(run)
+    if not folder.table.is_file():
+        raise InputError(
+            f"{run} has no rounds.json yet: no round is finished; go on with jaxleas distill"
+        )
+    data = RunData(run, _rounds(folder.table))
+    for row in data.rounds:
+        part = folder.round(row["round"])
+        if part.judged.is_file():
+            cells = read_json(part.judged)["cells"]
+            data.judged[row["round"]] = [CellResult.model_validate(cell) for cell in cells]
+        if (part.labels / "verdicts").is_dir():
+            data.labels.append(count_labels(row["round"], part.labels / "verdicts"))
+        if (part.run / "metrics.jsonl").is_file():
+            data.practice.append(read_metrics(part.run / "metrics.jsonl"))
+    where = read_json(run / BEGUN_WITH)["run"]
+    start = folder.start if where is None else Path(where)
+    if (start / "metrics.jsonl").is_file():
+        data.start = read_metrics(start / "metrics.jsonl")
+    else:
+        what = f"the first training's learning curve: {start} is not here"
+        data.missing.append(Missing(what, "put that run folder back where it was"))
+    _read_evaluations(data, run, start, planner)
+    return data
+
+
+def _read_evaluations(data: RunData, run: Path, start: Path, planner: str) -> None:
+    folder = run / "evaluation"
+    for file in sorted(folder.glob("*.json")) if folder.is_dir() else ():
+        if file.name != FIGURES:
+            data.evaluations.append(read_evaluation(file))
+    name = f"leas_p2_{planner}"
+    policies = f"--policies {name}={run}/policy.npz"
+    if not any(each.suite == "thesis" for each in data.evaluations):
+        data.missing.append(
+            Missing(
+                "tables 4.1, 4.2, 4.3: no evaluation of the suite thesis",
+                f"jaxleas evaluate {start} --suite thesis --planners sampling {policies}"
+                f" --json {folder}/thesis.json",
+            )
+        )
+    if (folder / FIGURES).is_file():
+        data.figures = read_figures(folder / FIGURES)
+    else:
+        data.missing.append(
+            Missing(
+                "figures 4.17, 5.6, 5.7, 5.8, 5.9: no figure file",
+                f"jaxleas figures {start} {policies} --out {folder}/{FIGURES}",
+            )
+        )
+
+
+def count_labels(number: int, folder: Path) -> LabelCount:
+    """Count a round's verdicts."""
+    verdicts: list[dict[str, Any]] = []
+    for file in sorted(folder.rglob("verdicts_*.json")):
+        content = read_json(file)
+        try:
+            verdicts += content["verdicts"]
+        except (KeyError, TypeError) as error:
+            raise InputError(f"{file} is no verdict file: {error!r}") from error
+    reasons = Counter(
+        _kind(each["reason"]) for each in verdicts if each["decided"] and not each["success"]
+    )
+    return LabelCount(
+        round=number,
+        guides=len(verdicts),
+        passed=sum(each["success"] for each in verdicts),
+        undecided=sum(not each["decided"] for each in verdicts),
+        seconds=sum(each["seconds"] for each in verdicts) / max(len(verdicts), 1),
+        reasons=tuple(reasons.most_common(MOST_REASONS)),
+    )
+
+
+def _kind(reason: str) -> str:
+    """Return a reason without its numbers, so that equal ones count together."""
+    words = ("#" if any(map(str.isdigit, word)) else word for word in reason.split())
+    return " ".join(words)
+
+
+def _rounds(table: Path) -> list[dict[str, Any]]:
+    content = read_json(table)
+    needed = {"round", "success", "cells", "labels", "seconds", "surrogate"}
+    rounds = content.get("rounds") if isinstance(content, dict) else None
+    if not isinstance(rounds, list) or not rounds:
+        raise InputError(f"{table} holds no `rounds`")
+    for row in rounds:
+        if not isinstance(row, dict) or needed - row.keys():
+            raise InputError(f"{table}: a round lacks one of {', '.join(sorted(needed))}")
+    return rounds
+
+
+def best_round(rounds: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return the round whose policy is kept: of greatest success, of equals the first."""
+    return max(rounds[1:] or rounds, key=lambda row: (row["success"], -row["round"]))

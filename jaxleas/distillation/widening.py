@@ -1,0 +1,94 @@
+"""Let a policy see more than it was trained with: new inputs begin with weights of zero."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.training.config import RunConfig
+from jaxleas.training.networks import initial_normaliser, scaling_of
+from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.train_state import Learned
+from jaxleas.types import InputError
+
+_FIRST_LAYER = "hidden_0"
+
+
+def widen(
+    config: RunConfig, learned: Learned, observation: str | None
+) -> tuple[RunConfig, Learned]:
+    """Return a run's configuration and networks for another observation layout.
+
+    They do what they did: the layout has the old one's values first, and what it adds is not
+    listened to before it is learned from.
+
+    Args:
+        config: of the run.
+        learned: by it.
+        observation: the layout's name; None keeps the run's own.
+
+    Raises:
+        InputError: the layout does not only add to the run's, or the normaliser is a running one,
+            which knows nothing of the new values.
+    """
+    if observation is None or observation == config.env.observation:
+        return config, learned
+    env = SteeringEnv(
+        SteeringConfig.model_validate(config.env.model_dump() | {"observation": observation})
+    )
+    before = SteeringEnv(config.env).layout
+    if (before.rows, before.columns) != (env.layout.rows, env.layout.columns) or (
+        env.layout.size < before.size
+    ):
+        raise InputError(
+            f"a policy that sees {before.name} cannot go on with practice.observation ="
+            f" {observation}, which does not only add to it: train one with env.observation ="
+            f" {observation}"
+        )
+    if config.network.normaliser != "affine":
+        raise InputError(
+            f"practice.observation = {observation} needs a policy with network.normaliser = affine,"
+            f" not {config.network.normaliser}"
+        )
+    changed = config.model_copy(update={"env": env.config})
+    added = env.layout.size - before.size
+    wider = Learned(
+        params=learned.params.replace(
+            policy=_wider(learned.params.policy, added), value=_wider(learned.params.value, added)
+        ),
+        averaged=_wider(learned.averaged, added),
+        normaliser=initial_normaliser(config.network, env),
+    )
+    return changed, wider
+
+
+def widen_policy(policy: SteeringPolicy, env: SteeringEnv) -> SteeringPolicy:
+    """Return a policy as it walks in an environment whose observation only adds to its own.
+
+    Args:
+        policy: trained.
+        env: whose observation `widen` has accepted.
+    """
+    added = env.layout.size - len(policy.mean)
+    if not added:
+        return policy
+    mean, deviation = scaling_of(env)
+    rows = jnp.zeros((added, policy.kernels[0].shape[1]), policy.kernels[0].dtype)
+    return policy.replace(  # type: ignore[attr-defined]
+        mean=mean,
+        deviation=deviation,
+        kernels=(jnp.concatenate([policy.kernels[0], rows]), *policy.kernels[1:]),
+        config=policy.config.model_copy(update={"observation": env.config.observation}),
+    )
+
+
+def _wider(params: Any, added: int) -> Any:
+    """Return a network's parameters with `added` inputs more, of weight zero."""
+    layers = dict(params["params"])
+    first = dict(layers[_FIRST_LAYER])
+    kernel = first["kernel"]
+    first["kernel"] = jnp.concatenate([kernel, jnp.zeros((added, kernel.shape[1]), kernel.dtype)])
+    layers[_FIRST_LAYER] = first
+    return jax.tree.map(jnp.asarray, {**params, "params": layers})

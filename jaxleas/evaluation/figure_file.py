@@ -1,0 +1,102 @@
+"""What the thesis's figures 4.17 and 5.6 to 5.9 are drawn from, as a file of plain numbers."""
+
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from jaxleas.evaluation.result_file import Count, Fraction, Length
+from jaxleas.files import read_json, write_json
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+
+class StepRow(Strict):
+    """Guide paths of one method in one cell, one configuration in `keep_every` planned for."""
+
+    cell: str
+    method: str
+    keep_every: Count
+    starts: Count
+    reached: Fraction
+    planned: Fraction
+    """Of all starts: the goal was reached and the planner made contacts for the whole path."""
+    low: Fraction
+    high: Fraction
+    """95 % interval (Wilson) of `planned`."""
+    undecided: Fraction | None = None
+    """Of all starts: the planner ran out of time; counted as not planned."""
+    mean_step: Length | None
+    """Of the root from one kept configuration to the next, over the paths that reached [m]."""
+    steps: Length | None
+    """Mean number of them."""
+    seconds: Length | None
+    """Planning, mean over the paths that succeeded [s]."""
+    slowest: Length | None
+    """The longest of them [s]."""
+
+
+class HeightBand(Strict):
+    """Root heights of one method over stairs; null where fewer than half of the paths pass."""
+
+    method: str
+    guides: int
+    low: tuple[float | None, ...]
+    mean: tuple[float | None, ...]
+    high: tuple[float | None, ...]
+    clearance: Length | None
+    """Mean distance of the root from the ground below it [m]."""
+
+
+class Course(Strict):
+    """One guide path of one method along the long course, step by step."""
+
+    method: str
+    reached: bool
+    planned: bool
+    x: tuple[float, ...]
+    """Where each step begins [m]."""
+    step: tuple[float, ...]
+    """Of the root [m]."""
+
+
+class Figures(Strict):
+    """The content of a figure file."""
+
+    version: Literal[1] = 1
+    created: str
+    planner: str
+    settings: dict[str, Any]
+    """Of the planner; `keep_every` is N_ref."""
+    policies: dict[str, str]
+    """SHA-256 of each policy's file, by the method's name."""
+    seed: int
+    held_out: bool
+    steps: tuple[StepRow, ...] = ()
+    along: tuple[float, ...] = ()
+    """Where the heights are taken, along the stairs [m]."""
+    ground: tuple[float | None, ...] = ()
+    heights: tuple[HeightBand, ...] = ()
+    course_along: tuple[float, ...] = ()
+    course_ground: tuple[float | None, ...] = ()
+    courses: tuple[Course, ...] = Field(default=())
+
+
+def write_figures(path: str | Path, figures: Figures) -> None:
+    """Write a figure file, whole or not at all."""
+    write_json(path, figures.model_dump(mode="json"))
+
+
+def read_figures(path: str | Path) -> Figures:
+    """Read a figure file.
+
+    Raises:
+        InputError: it is none; the key that is wrong is named.
+    """
+    content = read_json(path)
+    try:
+        return Figures.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"]) or "figures"
+        raise InputError(f"{path} is no figure file: {key}: {first['msg']}") from error

@@ -1,0 +1,192 @@
+"""Measure what the thesis's figures 4.17 and 5.6 to 5.9 show, for any methods (T 4.3.3, 5.2.4)."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import Judged, Walker, ask
+from jaxleas.evaluation.figure_file import Course, Figures, HeightBand, StepRow, write_figures
+from jaxleas.evaluation.judge import Walk, rounded
+from jaxleas.evaluation.scene_pictures import height_band
+from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
+from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.labels import Judge, PlannerSettings, Workers
+from jaxleas.terrain.height_map import HeightMap
+
+BASIC = ("stairs_up", "stairs_down", "rubble")
+COURSE = "long_course"
+SPEED = 0.04  # at the start: chapter 4's, one set of guides for all planners [m/s]
+KEEP_EVERY = (6, 8, 10, 12, 14, 16, 18, 20)
+"""N from 6 to 20, as fig. 5.6."""
+BINS = 120
+
+
+def measure_figures(
+    env: SteeringEnv,
+    walkers: Mapping[str, Walker],
+    suite: Suite,
+    figures: Figures,
+    settings: PlannerSettings,
+    workers: Workers,
+    file: Path,
+    course_starts: int,
+    keep_every: Sequence[int] = KEEP_EVERY,
+    say: Callable[[str], None] = lambda text: None,
+) -> Figures:
+    """Fill in what a figure file lacks; it is written after each row, so that work restarts.
+
+    Args:
+        env: the task.
+        walkers: methods, by name.
+        suite: `thesis`, with starts for the basic scenarios.
+        figures: what is there already.
+        settings: of the planner; every N replaces its `keep_every`.
+        workers: that judge.
+        file: written.
+        course_starts: starts on the long course, whose guide paths take much longer.
+        keep_every: values of N.
+        say: told what is done now.
+    """
+    wanted = (*BASIC, COURSE)
+    cells = {
+        cell.name: replace(cell, starts=course_starts) if cell.name == COURSE else cell
+        for cell in suite.cells
+        if cell.name in wanted and cell.speed == SPEED
+    }
+    grounds = make_grounds(list(cells.values()))
+    known = {(row.cell, row.method, row.keep_every): row for row in figures.steps}
+    total = len(cells) * len(walkers) * len(keep_every)
+    for name in wanted:
+        cell = cells[name]
+        starts = None
+        for method, walks in walkers.items():
+            if all((name, method, each) in known for each in keep_every):
+                continue
+            starts = starts or draw_starts(env, grounds, cell, suite.stream())
+            walked = walks(grounds, starts, suite.steps_of(cell))
+            if name == "stairs_up":
+                figures = _with_heights(figures, grounds, cell, method, walked)
+            for each in keep_every:
+                if (name, method, each) in known:
+                    continue
+                say(f"figures {len(known) + 1}/{total}: {method} on {name}, 1 in {each}")
+                chosen = settings.model_copy(update={"keep_every": each})
+                judge = Judge(figures.planner, chosen, workers=workers)
+                judged = ask(cell, walked, judge, env.config.limits.time_step)
+                row = step_row(cell, method, each, judged)
+                known[name, method, each] = row
+                figures = figures.model_copy(update={"steps": tuple(known.values())})
+                if name == COURSE and each == settings.keep_every:
+                    figures = _with_course(figures, grounds, cell, method, judged, each)
+                write_figures(file, figures)
+    return figures
+
+
+def step_row(cell: Cell, method: str, keep_every: int, judged: Judged) -> StepRow:
+    """Count and measure the guide paths of one method, for one N."""
+    walked = judged.walk
+    paths = [walked.path(int(row)) for row in np.flatnonzero(walked.reached)]
+    steps = [step_lengths(path, keep_every) for path in paths]
+    good = [each for each in judged.verdicts if each is not None and each.success]
+    late = [each for each in judged.verdicts if each is not None and not each.decided]
+    low, high = wilson_interval(len(good), cell.starts)
+    every = np.concatenate(steps) if steps else np.zeros(0)
+    return StepRow(
+        cell=cell.name,
+        method=method,
+        keep_every=keep_every,
+        starts=cell.starts,
+        reached=rounded(walked.reached.mean()),
+        planned=rounded(len(good) / cell.starts),
+        low=rounded(low),
+        high=rounded(high),
+        undecided=rounded(len(late) / cell.starts),
+        mean_step=rounded(every.mean()) if len(every) else None,
+        steps=rounded(np.mean([len(each) for each in steps])) if steps else None,
+        seconds=rounded(np.mean([each.seconds for each in good])) if good else None,
+        slowest=rounded(max(each.seconds for each in good)) if good else None,
+    )
+
+
+def step_lengths(path: np.ndarray, keep_every: int) -> np.ndarray:
+    """Return the root's way from one kept configuration to the next, straight [m].
+
+    Args:
+        path: root positions [T, 3].
+        keep_every: one in so many is kept, the first among them.
+    """
+    kept = path[::keep_every].astype(np.float64)
+    return np.linalg.norm(np.diff(kept, axis=0), axis=1)
+
+
+def _with_heights(
+    figures: Figures, grounds: Grounds, cell: Cell, method: str, walked: Walk
+) -> Figures:
+    """Return figures with the root heights over the first scene's stairs (fig. 4.17)."""
+    scene = walked.starts.scene == 0
+    ground, area = _ground(grounds, cell), cell.scenarios[0].goal_area
+    along = np.linspace(0.0, 0.5 * (area[0] + area[1]), BINS)
+    here = replace(walked, reached=walked.reached & scene)
+    low, mean, high = height_band(Judged(here, (None,) * len(scene)), along)
+    gaps = [_clearance(ground, walked.path(int(row))) for row in np.flatnonzero(here.reached)]
+    band = HeightBand(
+        method=method,
+        guides=int(here.reached.sum()),
+        low=_plain(low),
+        mean=_plain(mean),
+        high=_plain(high),
+        clearance=rounded(np.mean(gaps)) if gaps else None,
+    )
+    others = tuple(each for each in figures.heights if each.method != method)
+    height = ground.height_at(np.column_stack([along, np.zeros(BINS)]))
+    return figures.model_copy(
+        update={"along": _plain(along), "ground": _plain(height), "heights": (*others, band)}
+    )
+
+
+def _with_course(
+    figures: Figures, grounds: Grounds, cell: Cell, method: str, judged: Judged, keep_every: int
+) -> Figures:
+    """Return figures with one guide path along the long course (fig. 5.8)."""
+    walked = judged.walk
+    scene = walked.starts.scene == 0
+    best = next(
+        (flag for flag in (judged.planned & scene, walked.reached & scene) if flag.any()), scene
+    )
+    row = int(np.argmax(best))
+    path = walked.path(row)
+    course = Course(
+        method=method,
+        reached=bool(walked.reached[row]),
+        planned=bool(judged.planned[row]),
+        x=tuple(path[::keep_every][:-1, 0].astype(np.float64).round(4).tolist()),
+        step=tuple(step_lengths(path, keep_every).round(4).tolist()),
+    )
+    ground = _ground(grounds, cell)
+    x_min, x_max, _, _ = ground.extent
+    along = np.linspace(x_min, x_max, 4 * BINS)
+    height = ground.height_at(np.column_stack([along, np.zeros(len(along))]))
+    others = tuple(each for each in figures.courses if each.method != method)
+    return figures.model_copy(
+        update={
+            "course_along": _plain(along),
+            "course_ground": _plain(height),
+            "courses": (*others, course),
+        }
+    )
+
+
+def _ground(grounds: Grounds, cell: Cell) -> HeightMap:
+    return grounds.maps[grounds.index[id(cell.scenarios[0])]]
+
+
+def _clearance(ground: HeightMap, path: np.ndarray) -> float:
+    return float(np.nanmean(path[:, 2] - ground.height_at(path[:, :2].astype(np.float64))))
+
+
+def _plain(values: np.ndarray) -> tuple[float | None, ...]:
+    return tuple(round(float(each), 4) if np.isfinite(each) else None for each in values)

@@ -1,0 +1,117 @@
+"""The command `jaxleas figures`."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
+from jaxleas.evaluation.examination import POLICY, load_candidate
+from jaxleas.evaluation.figure_file import Figures, read_figures, write_figures
+from jaxleas.evaluation.figures import KEEP_EVERY, measure_figures
+from jaxleas.evaluation.progress import Reporter
+from jaxleas.evaluation.result_file import now
+from jaxleas.evaluation.suites import make_suite
+from jaxleas.labels import Here, ProcessWorkers
+from jaxleas.labels.settings import settings_from
+from jaxleas.types.errors import InputError
+
+METHODS = ("rb_kino", POLICY)
+
+
+def figures(
+    run: Path,
+    *,
+    out: Path,
+    policies: Sequence[str] | None = None,
+    methods: Sequence[str] | None = None,
+    planner: Literal["mip", "sl1m", "sampling"] = "mip",
+    keep_every: Sequence[int] = KEEP_EVERY,
+    starts: int = 30,
+    course_starts: int = 10,
+    seed: int = 0,
+    held_out: bool = False,
+    processes: int | None = None,
+) -> Figures:
+    """Measure what the thesis's figures 4.17 and 5.6 to 5.9 show; `jaxleas report` draws them.
+
+    Guide paths over stairs, rubble and the long course are planned for at several discretisations.
+    The file grows row by row; the same command goes on where it was interrupted, and adds methods.
+
+    Args:
+        run: a run folder, a policy.npz or an .onnx file: LEAS-P1.
+        out: the figure file, .json.
+        policies: further ones, each as name=path.
+        methods: of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further policies; by default
+            rb_kino, leas_p1 and the further ones.
+        planner: that judges.
+        keep_every: one configuration in so many is planned for, for each of these numbers.
+        starts: on stairs and rubble.
+        course_starts: on the long course, whose guide paths take longer.
+        seed: of scenes and starts.
+        held_out: on terrain to choose and tune by, not on that of evaluation.
+        processes: that plan contacts at the same time; all cores by default.
+
+    Raises:
+        InputError: there is no such policy or method, a number is out of range, or the file is of
+            other policies, planner settings or scenes.
+    """
+    if processes is not None and processes < 1:
+        raise InputError(f"--processes is {processes}; give 1 or more")
+    if not keep_every or min(keep_every) < 1 or course_starts < 1:
+        raise InputError("--keep-every and --course-starts need numbers of 1 or more")
+    suite = make_suite("thesis", starts, seed, held_out)
+    settings = settings_from(planner)
+    candidate = load_candidate(run)
+    further = parse_policies(policies or ())
+    wanted = list(methods) if methods else [*METHODS, *further]
+    contenders = make_contenders(candidate, further, wanted)
+    fingerprints = {POLICY: candidate.fingerprint} if POLICY in wanted else {}
+    fingerprints |= {name: fingerprint_of(path) for name, path in further.items() if name in wanted}
+    head = Figures(
+        created=now(),
+        planner=planner,
+        settings=settings.model_dump(mode="json"),
+        policies=fingerprints,
+        seed=seed,
+        held_out=held_out,
+    )
+    found = _opened(out, head)
+    write_figures(out, found)
+    count = processes or os.cpu_count() or 1
+    workers = Here() if count == 1 else ProcessWorkers(count)
+    try:
+        with Reporter() as reporter:
+            found = measure_figures(
+                candidate.env,
+                contenders.walkers,
+                suite,
+                found,
+                settings,
+                workers,
+                Path(out),
+                course_starts,
+                tuple(keep_every),
+                reporter.say,
+            )
+    finally:
+        workers.close()
+    print(f"written: {out}, {len(found.steps)} rows of {', '.join(wanted)}")
+    return found
+
+
+def _opened(out: Path, head: Figures) -> Figures:
+    """Return what the file holds already, with the policies of both."""
+    if not Path(out).is_file():
+        return head
+    before = read_figures(out)
+    for name in ("planner", "settings", "seed", "held_out"):
+        if getattr(before, name) != getattr(head, name):
+            raise InputError(
+                f"{out} has {name} {getattr(before, name)}, not {getattr(head, name)}: give another"
+                " --out"
+            )
+    for name, fingerprint in head.policies.items():
+        if before.policies.get(name, fingerprint) != fingerprint:
+            raise InputError(f"{out} was measured with another policy {name}: give another --out")
+    return before.model_copy(update={"policies": before.policies | head.policies})

@@ -1,0 +1,84 @@
+"""The risk dial at run time: guide paths that a surrogate foresees to fail are refused."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.surrogates import Surrogate, SurrogateForesight, read_surrogate, require_fit
+from jaxleas.types.errors import InputError
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A walk ends, stopped, before its probability of success falls below the threshold.
+
+    Attributes:
+        surrogate: that foresees.
+        threshold: least probability, by the surrogate, that the planner gets so far.
+        fingerprint: SHA-256 of the surrogate's file.
+        where: how errors call it.
+    """
+
+    surrogate: Surrogate
+    threshold: float
+    fingerprint: str
+    where: str
+
+    def env(self, config: SteeringConfig) -> SteeringEnv:
+        """Return an environment in which walks are refused.
+
+        Raises:
+            InputError: the surrogate is of another robot or observation.
+        """
+        require_fit(self.surrogate, config, where=self.where)
+        return SteeringEnv(config, foresight=SurrogateForesight(self.surrogate, self.threshold))
+
+    def describe(self) -> dict[str, Any]:
+        """Return what an evaluation file says of it."""
+        return {
+            "surrogate": self.fingerprint,
+            "planner": self.surrogate.identity.planner,
+            "threshold": self.threshold,
+        }
+
+
+def load_refusal(
+    surrogate: Path | None, threshold: float | None, planners: Sequence[str] = ()
+) -> Refusal | None:
+    """Return the refusal asked for on the command line, if any.
+
+    Args:
+        surrogate: its file.
+        threshold: least probability of success.
+        planners: that will judge; none: the conditions alone.
+
+    Raises:
+        InputError: one of the two is missing, the file is no surrogate or stands in for none of the
+            planners, or the threshold is no probability below 1.
+    """
+    if surrogate is None and threshold is None:
+        return None
+    if surrogate is None:
+        raise InputError(f"--threshold {threshold:g} needs a --surrogate to ask")
+    if threshold is None:
+        raise InputError(f"--surrogate {surrogate} needs a --threshold, as 0.9")
+    if not 0.0 <= threshold < 1.0:
+        raise InputError(f"--threshold is {threshold:g}; give a probability, from 0 to below 1")
+    found = read_surrogate(surrogate)
+    mine = found.identity.planner
+    if planners and mine not in planners:
+        raise InputError(
+            f"{surrogate} stands in for the {mine} planner, but {', '.join(planners)} will judge:"
+            f" give a surrogate of theirs, or --planners {mine}"
+        )
+    fingerprint = hashlib.sha256(Path(surrogate).read_bytes()).hexdigest()
+    return Refusal(found, threshold, fingerprint, str(surrogate))
+
+
+def env_of(config: SteeringConfig, refusal: Refusal | None) -> SteeringEnv:
+    """Return the environment to judge in, with a refusal or without."""
+    return SteeringEnv(config) if refusal is None else refusal.env(config)

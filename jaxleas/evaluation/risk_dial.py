@@ -1,0 +1,168 @@
+"""The risk dial, measured: what refusing guide paths costs, and what it buys, at every threshold.
+
+A walk's probability of success only falls along its way, so refusing below a threshold while it
+walks refuses the very guide paths whose last probability lies below it. One judgement of all guide
+paths therefore tells what every threshold would have done.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import Judged
+from jaxleas.evaluation.judge import path_lengths
+from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
+from jaxleas.terrain.atlas import Atlas
+
+DPI = 110
+
+
+@dataclass(frozen=True)
+class Guides:
+    """N starts, their guide paths and what was foreseen and found.
+
+    Attributes:
+        reached: the guide path reached its goal.
+        planned: and the exact planner got through.
+        survival: the surrogate's probability that it would; 0 where the goal was not reached.
+        speed: of the root along the guide path, mean [m/s].
+    """
+
+    reached: Bool[np.ndarray, " N"]
+    planned: Bool[np.ndarray, " N"]
+    survival: Float[np.ndarray, " N"]
+    speed: Float[np.ndarray, " N"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What one threshold does.
+
+    Attributes:
+        threshold: of the surrogate's probability.
+        attempted: share of all starts whose guide path reaches its goal and is not refused.
+        planned: share of all starts attempted and planned for by the exact planner.
+        success: share of those attempted that were planned for; None where none was attempted.
+        low: lower end of its 95 % interval (Wilson); None likewise.
+        high: upper end.
+        speed: mean of the roots attempted [m/s]; None likewise.
+        starts: in all.
+    """
+
+    threshold: float
+    attempted: float
+    planned: float
+    success: float | None
+    low: float | None
+    high: float | None
+    speed: float | None
+    starts: int
+
+
+def foresee(
+    env: SteeringEnv, atlas: Atlas, judged: Judged, surrogate: Surrogate, time_step: float
+) -> Guides:
+    """Return what a surrogate foresaw, and an exact planner found, of a cell's guide paths.
+
+    Args:
+        env: whose local terrain the surrogate is shown.
+        atlas: terrains that were walked on.
+        judged: walks and verdicts.
+        surrogate: asked.
+        time_step: between two configurations [s].
+    """
+    walked, keep = judged.walk, surrogate.identity.keep_every
+    rows = np.flatnonzero(walked.reached)
+    survival = np.zeros(len(walked.reached))
+    if len(rows):
+        paths = [walked.guide_path(int(row), time_step) for row in rows]
+        maps = np.asarray(walked.starts.map_index)[rows].tolist()
+        last = [len(path) - 1 for path in paths]
+        walks = label_walks(paths, last, maps, keep, 1 + max(last) // keep)
+        survival[rows] = 1.0 - foreseen_failure(surrogate, env, atlas, walks)
+    length, _ = path_lengths(walked)
+    speed = length / np.maximum(walked.end * time_step, time_step)
+    return Guides(walked.reached, judged.planned, survival, speed)
+
+
+def join(parts: Sequence[Guides]) -> Guides:
+    """Return the guide paths of several cells as one."""
+    names = Guides.__dataclass_fields__
+    return Guides(
+        **{name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
+    )
+
+
+def sweep(guides: Guides, thresholds: Sequence[float]) -> list[Setting]:
+    """Return what each threshold does."""
+    return [_setting(guides, threshold) for threshold in thresholds]
+
+
+def _setting(guides: Guides, threshold: float) -> Setting:
+    starts = len(guides.reached)
+    attempted = guides.reached & (guides.survival >= threshold)
+    good, tried = int((attempted & guides.planned).sum()), int(attempted.sum())
+    low, high = wilson_interval(good, tried) if tried else (None, None)
+    return Setting(
+        threshold=threshold,
+        attempted=tried / starts,
+        planned=good / starts,
+        success=good / tried if tried else None,
+        low=low,
+        high=high,
+        speed=float(guides.speed[attempted].mean()) if tried else None,
+        starts=starts,
+    )
+
+
+def as_json(settings: Sequence[Setting]) -> list[dict[str, Any]]:
+    """Return settings as plain values, rounded as other results are."""
+    return [
+        {
+            name: round(value, 6) if isinstance(value, float) else value
+            for name, value in asdict(each).items()
+        }
+        for each in settings
+    ]
+
+
+def draw_dial(curves: Mapping[str, Sequence[Mapping[str, Any]]], title: str) -> bytes:
+    """Draw exact success against the share attempted, and against speed, as a PNG.
+
+    Args:
+        curves: settings as `as_json` gives them, by the name of what was walked.
+        title: above the picture.
+    """
+    from matplotlib.figure import Figure  # not pyplot: no global state, no window
+
+    figure = Figure(figsize=(10.4, 4.2), layout="constrained")
+    axes = figure.subplots(1, 3)
+    for name, settings in curves.items():
+        there = [each for each in settings if each["success"] is not None]
+        at = [each["threshold"] for each in there]
+        success = [100.0 * each["success"] for each in there]
+        attempted = [100.0 * each["attempted"] for each in there]
+        (line,) = axes[0].plot(at, success, marker=".", label=name)
+        band = [[100.0 * each[end] for each in there] for end in ("low", "high")]
+        axes[0].fill_between(at, *band, color=line.get_color(), alpha=0.12, linewidth=0)
+        axes[1].plot(attempted, success, marker=".", color=line.get_color())
+        axes[2].plot(
+            [100.0 * each["speed"] for each in there], success, ".-", color=line.get_color()
+        )
+    labels = ("threshold", "starts attempted [%]", "mean speed of the root [cm/s]")
+    for ax, label in zip(axes, labels, strict=True):
+        ax.set(xlabel=label, ylabel="exact success of those attempted [%]")
+        ax.grid(color="0.9", linewidth=0.6)
+        ax.tick_params(labelsize=8)
+        ax.spines[["top", "right"]].set_visible(False)
+    axes[0].legend(frameon=False, fontsize=8, loc="lower right")
+    figure.suptitle(title, fontsize=11)
+    stream = BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    return stream.getvalue()

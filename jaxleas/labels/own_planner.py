@@ -1,0 +1,168 @@
+"""A contact planner of the user's own: a class with settings and one method."""
+
+import hashlib
+import inspect
+import sys
+import time
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import PositiveInt
+
+from jaxleas.labels.verdict import Verdict, mean_step
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a planner made of one guide path.
+
+    Attributes:
+        last_index: of the last configuration of the guide path that it reached; -1: not even the
+            first. It succeeded where this is the path's last.
+        steps: contacts made on the way.
+        reason: what stopped it, a sentence; needed where it did not succeed.
+        decided: False where it ran out of time: then it is neither a success nor a failure.
+    """
+
+    last_index: int
+    steps: int = 0
+    reason: str = ""
+    decided: bool = True
+
+
+class OwnPlanner(Strict):
+    """Base of a planner named as MODULE:CLASS; its fields are its settings.
+
+    The settings are part of a verdict's provenance, as is the source file: verdicts of other
+    settings or of changed code are never mixed. Workers in other processes import the module by its
+    name.
+    """
+
+    keep_every: PositiveInt = 5
+    """one guide configuration in so many is asked about"""
+
+    def judge(self, scene: Scene, path: GuidePath) -> Outcome:
+        """Plan contacts along a guide path.
+
+        Args:
+            scene: to walk on.
+            path: to be followed; every `keep_every`-th configuration, from the first, counts.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no method judge(scene, path)")
+
+
+def is_own(planner: str) -> bool:
+    """Whether a planner's name is that of a class, MODULE:CLASS."""
+    return ":" in planner
+
+
+def load_planner(planner: str) -> type[OwnPlanner]:
+    """Import a planner of the user's own; the working folder is looked in, too.
+
+    This runs code: call it for names from a command line, never for names from a file alone.
+
+    Raises:
+        InputError: there is no such module or class, or it is no planner.
+    """
+    module, _, name = planner.partition(":")
+    if (here := str(Path.cwd())) not in sys.path:
+        sys.path.append(here)
+    try:
+        found = getattr(import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise InputError(
+            f"the planner {planner} cannot be loaded: {error}; give MODULE:CLASS of a module in"
+            " this folder or one that is installed"
+        ) from error
+    if not (isinstance(found, type) and issubclass(found, OwnPlanner)):
+        raise InputError(
+            f"{planner} is no planner: derive a class from jaxleas.labels.OwnPlanner and give it"
+            " judge(scene, path)"
+        )
+    return found
+
+
+def require_said(config: Path, planner: str, said: str | None) -> None:
+    """Refuse to run code that only a file names.
+
+    Args:
+        config: the file.
+        planner: that it asks for.
+        said: on the command line.
+
+    Raises:
+        InputError: it is code, and was not said; or something else was said.
+    """
+    if said is None and is_own(planner):
+        raise InputError(
+            f"{config} asks for the planner {planner}, which is code: if you trust it, give"
+            f" --planner {planner} as well"
+        )
+    if said is not None and said != planner:
+        raise InputError(f"{config} asks for the planner {planner}, not for {said}")
+
+
+def source_of(planner: type[OwnPlanner]) -> dict[str, Any]:
+    """Return name and SHA-256 of the file that a planner is written in."""
+    file = Path(inspect.getfile(planner))
+    return {"file": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
+
+
+def judge_by_own(scene: Scene, path: GuidePath, planner: OwnPlanner, number: int = 0) -> Verdict:
+    """Ask a planner of the user's own about one guide path, and check its answer.
+
+    Raises:
+        InputError: the answer contradicts itself or the path.
+    """
+    begun = time.perf_counter()
+    outcome = planner.judge(scene, path)
+    seconds = time.perf_counter() - begun
+    name = f"{type(planner).__module__}:{type(planner).__name__}"
+    if wrong := _contradiction(outcome, len(path)):
+        raise InputError(f"{name} on guide path {number}: {wrong}")
+    kept = np.arange(0, len(path), planner.keep_every)
+    last = int(outcome.last_index)
+    return Verdict(
+        path=number,
+        decided=bool(outcome.decided),
+        success=bool(outcome.decided) and last == len(path) - 1,
+        last_index=last,
+        length=len(path),
+        reached=float(np.mean(kept <= last)),
+        steps=int(outcome.steps),
+        mean_step=mean_step(path, last, int(outcome.steps)),
+        repositions=None,
+        least_robustness=None,
+        mean_robustness=None,
+        undecided=None,
+        combinations=None,
+        reason=outcome.reason,
+        seconds=seconds,
+    )
+
+
+def _contradiction(outcome: Any, length: int) -> str:
+    if not isinstance(outcome, Outcome):
+        return f"judge returned {type(outcome).__name__}, not jaxleas.labels.Outcome"
+    for field in ("last_index", "steps"):
+        value = getattr(outcome, field)
+        if isinstance(value, bool) or not isinstance(value, int | np.integer):
+            return f"{field} is {value!r}, not a whole number"
+    if not -1 <= outcome.last_index < length:
+        return f"last_index is {outcome.last_index}, but it should be -1 to {length - 1}"
+    if outcome.steps < 0:
+        return f"steps is {outcome.steps}, but it should be 0 or more"
+    whole = outcome.decided and outcome.last_index == length - 1
+    if whole == bool(outcome.reason):
+        return (
+            f"the reason is {outcome.reason!r}, but a path that was followed to its end has none,"
+            " and any other has one"
+        )
+    return ""

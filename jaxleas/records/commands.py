@@ -1,0 +1,147 @@
+"""The commands `jaxleas runs` and `jaxleas compare`."""
+
+import json as json_text
+import shutil
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import Any, Literal
+
+from jaxleas.files import write_bytes, write_json, write_text
+from jaxleas.records.comparison import compare_runs
+from jaxleas.records.finding import find_runs
+from jaxleas.records.listing import as_json, table
+from jaxleas.records.record import RunRecord, State, defaults, read_record
+from jaxleas.records.side_by_side import draw, plain, to_html, to_json
+from jaxleas.training.configuration_fields import nearest
+from jaxleas.training.configuration_yaml import parse_yaml
+from jaxleas.types.errors import InputError
+
+_KEYS: dict[str, Callable[[RunRecord], Any]] = {
+    "begun": lambda run: run.created,
+    "name": lambda run: run.name,
+    "state": lambda run: run.state,
+    "steps": lambda run: run.steps,
+    "held_out": lambda run: run.held_out,
+    "success": lambda run: run.success,
+    "time": lambda run: run.seconds,
+}
+
+
+def runs(
+    folder: Path = Path("runs"),
+    *,
+    sort: Literal["begun", "name", "state", "steps", "held_out", "success", "time"] = "begun",
+    reverse: bool = False,
+    state: Sequence[State] | None = None,
+    name: str | None = None,
+    where: Sequence[str] | None = None,
+    json: bool = False,
+) -> None:
+    """List the runs below a folder: how far they came, how well they do, what they were told.
+
+    Args:
+        folder: to look in; a sweep's trials and a distillation's rounds are found, too.
+        sort: by this column; runs that have no value in it come last.
+        reverse: the other way round.
+        state: show only finished, running, interrupted or damaged ones.
+        name: show only folders that match, as 'leas_*'.
+        where: show only runs configured so, as seed=1 ppo.discount=0.99.
+        json: write plain values in place of the table.
+
+    Raises:
+        InputError: there is no such folder, or no such field to choose by.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(f"the folder {folder} does not exist: give one that holds runs")
+    wanted = _conditions(where or ())
+    found = [read_record(path) for path in find_runs(folder)]
+    shown = [
+        run
+        for run in found
+        if (state is None or run.state in state)
+        and (name is None or fnmatch(run.path.name, name) or fnmatch(str(run.path), name))
+        and all(run.config.get(key, _MISSING) == value for key, value in wanted.items())
+    ]
+    shown = _sorted(shown, _KEYS[sort], reverse)
+    if json:
+        print(json_text.dumps([as_json(run) for run in shown], indent=2))
+    elif shown:
+        print(table(shown, folder, shutil.get_terminal_size((120, 24)).columns))
+    else:
+        some = f"none of the {len(found)} runs" if found else "no run"
+        print(f"{some} under {folder} {'is so' if found else 'yet'}")
+
+
+def compare(
+    runs: Sequence[Path],
+    *,
+    json: Path | None = None,
+    picture: Path | None = None,
+    html: Path | None = None,
+) -> None:
+    """Put runs side by side: what differs in configuration and origin, curves, success.
+
+    Args:
+        runs: two run folders or more.
+        json: where to write the comparison as plain values.
+        picture: where to draw the learning curves, .png.
+        html: where to write all of it as one file.
+
+    Raises:
+        InputError: there are not two, or one of them is no run folder.
+    """
+    if len(runs) < 2:
+        raise InputError(f"there is only {runs[0]} to compare: give two run folders or more")
+    records = [_require_run(Path(run)) for run in runs]
+    comparison = compare_runs(records)
+    print(plain(comparison))
+    if json is not None:
+        write_json(json, to_json(comparison))
+    if picture is not None:
+        write_bytes(picture, draw(comparison))
+    if html is not None:
+        write_text(html, to_html(comparison))
+    for written in (json, picture, html):
+        if written is not None:
+            print(f"written: {written}")
+
+
+_MISSING = object()
+
+
+def _require_run(path: Path) -> RunRecord:
+    if not path.is_dir():
+        raise InputError(f"the run folder {path} does not exist")
+    if find_runs(path) != [path]:
+        raise InputError(f"{path} is not a run folder: it holds no provenance.json")
+    record = read_record(path)
+    if record.state == "damaged":
+        raise InputError(record.problem)
+    return record
+
+
+def _conditions(where: Sequence[str]) -> dict[str, Any]:
+    known = [*defaults()]
+    wanted = {}
+    for each in where:
+        key, equals, text = each.partition("=")
+        if not equals:
+            raise InputError(f"--where {each}: conditions look like ppo.discount=0.99")
+        if key not in known:
+            near = nearest(key, known)
+            hint = f"; perhaps you meant {near}" if near else ""
+            raise InputError(f"--where {each}: there is no field {key}{hint}")
+        try:
+            wanted[key] = parse_yaml(text)
+        except ValueError as error:
+            raise InputError(f"--where {each}: {text} is not YAML: {error}") from error
+    return wanted
+
+
+def _sorted(
+    records: Sequence[RunRecord], key: Callable[[RunRecord], Any], reverse: bool
+) -> list[RunRecord]:
+    known = [run for run in records if key(run) is not None]
+    return sorted(known, key=key, reverse=reverse) + [run for run in records if key(run) is None]

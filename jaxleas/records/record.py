@@ -1,0 +1,188 @@
+"""One run as its folder tells it, however far it came and whatever became of it."""
+
+import fcntl
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from jaxleas.evaluation.examination import BASELINES
+from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
+from jaxleas.files import read_json
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration_yaml import read_mapping
+from jaxleas.training.metrics import read_metrics
+from jaxleas.types.errors import InputError
+
+State = Literal["finished", "running", "interrupted", "damaged"]
+STATES: tuple[State, ...] = get_args(State)
+HELD_OUT = "held_out/reached"
+SUITE = "transitions"
+"""The suite by which runs are listed."""
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """What is known of a run; what is not known is None or empty.
+
+    Attributes:
+        path: its folder.
+        state: damaged where a file of it cannot be read.
+        problem: what is wrong with a damaged one, a sentence.
+        created: ISO 8601, UTC.
+        source: stem of the configuration file it was trained from.
+        revision: of git, twelve digits, with a + where files were changed.
+        config: the resolved configuration, flat: values by dotted key.
+        provenance: where it comes from, flat likewise.
+        metrics: rows of metrics.jsonl.
+        steps: done.
+        total: to be done.
+        seconds: of training.
+        held_out: best share of held-out starts that reached the goal.
+        evaluations: by suite.
+    """
+
+    path: Path
+    state: State = "damaged"
+    problem: str = ""
+    created: str | None = None
+    source: str | None = None
+    revision: str | None = None
+    config: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    metrics: tuple[Mapping[str, Any], ...] = ()
+    steps: int = 0
+    total: int | None = None
+    seconds: float | None = None
+    held_out: float | None = None
+    evaluations: Mapping[str, Evaluation] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Its folder, for people."""
+        return str(self.path)
+
+    @property
+    def success(self) -> float | None:
+        """Mean success over the cells of the transitions suite, if it was judged."""
+        cells = self.cells(SUITE)
+        return sum(cell.success for cell in cells) / len(cells) if cells else None
+
+    @property
+    def differences(self) -> dict[str, Any]:
+        """What its configuration states that is not the default."""
+        usual = defaults()
+        return {key: value for key, value in self.config.items() if usual.get(key) != value}
+
+    def cells(self, suite: str) -> list[CellResult]:
+        """Return the cells of a suite in which its own policy was judged, by the conditions."""
+        found = self.evaluations.get(suite)
+        cells = () if found is None else found.cells
+        return [each for each in cells if each.method not in BASELINES and each.planner is None]
+
+
+def read_record(path: str | Path) -> RunRecord:
+    """Return what a folder tells of its run; never fails: a damaged one says so itself."""
+    path = Path(path)
+    found: dict[str, Any] = {}
+    problems = []
+    for read in (_config, _provenance, _metrics, _evaluations):
+        try:
+            found |= read(path)
+        except InputError as error:
+            problems.append(str(error))
+        except (KeyError, TypeError, ValueError, AttributeError, OSError) as error:
+            problems.append(f"{path}: {read.__name__[1:]} cannot be understood: {error!r}")
+    done = found.get("steps", 0) >= (found.get("total") or float("inf"))
+    finished = done and (path / "policy.npz").is_file()
+    # Asked only of those that may be at work: asking holds the lock for a moment.
+    state: State = "finished" if finished else "running" if _is_held(path) else "interrupted"
+    if problems and state != "running":  # one that begins just now is not whole yet
+        state = "damaged"
+    return RunRecord(path, state, problem=problems[0] if problems else "", **found)
+
+
+def flat(value: Any, prefix: str = "") -> dict[str, Any]:
+    """Return nested mappings as one, with dotted keys."""
+    if not isinstance(value, Mapping):
+        return {prefix.removesuffix("."): value}
+    return {
+        name: inner
+        for key, each in value.items()
+        for name, inner in flat(each, f"{prefix}{key}.").items()
+    }
+
+
+def defaults() -> dict[str, Any]:
+    """Return the default configuration, flat."""
+    return flat(RunConfig().model_dump(mode="json"))
+
+
+def _config(path: Path) -> dict[str, Any]:
+    if not (path / "config.yaml").is_file():
+        raise InputError(f"{path} is half-written: it holds no config.yaml")
+    # As it is, not validated: a run of another version is still a run.
+    usual, stated = defaults(), flat(_plain(read_mapping(path / "config.yaml")))
+    if crushed := next((key for key in stated if any(k.startswith(f"{key}.") for k in usual)), ""):
+        raise InputError(f"{path / 'config.yaml'}: {crushed} should hold `key: value` pairs")
+    config = usual | stated
+    batch = int(config["ppo.environments"]) * int(config["ppo.unroll"])
+    return {"config": config, "total": -(-int(config["ppo.steps"]) // batch) * batch}
+
+
+def _provenance(path: Path) -> dict[str, Any]:
+    if not (path / "provenance.json").is_file():
+        raise InputError(f"{path} is half-written: it holds no provenance.json")
+    provenance = read_json(path / "provenance.json")
+    git = provenance["git"]
+    sources = [word for word in provenance["command"] if str(word).endswith((".yaml", ".yml"))]
+    return {
+        "provenance": flat(provenance),
+        "created": str(provenance["created"]),
+        "source": Path(sources[0]).stem if sources else None,
+        "revision": git and str(git["revision"])[:12] + ("+" if git["changed"] else ""),
+    }
+
+
+def _metrics(path: Path) -> dict[str, Any]:
+    if not (path / "metrics.jsonl").is_file():
+        return {}
+    rows = read_metrics(path / "metrics.jsonl")
+    examined = [float(row[HELD_OUT]) for row in rows if row.get(HELD_OUT) is not None]
+    if not all(0.0 <= each <= 1.0 for each in examined):
+        raise InputError(f"{path / 'metrics.jsonl'} holds a {HELD_OUT} that is no fraction")
+    return {
+        "metrics": tuple(rows),
+        "steps": int(rows[-1]["step"]) if rows else 0,
+        "seconds": float(rows[-1]["seconds"]) if rows else None,
+        "held_out": max(examined, default=None),
+    }
+
+
+def _evaluations(path: Path) -> dict[str, Any]:
+    found = [read_evaluation(file) for file in sorted((path / "evaluation").glob("*.json"))]
+    return {"evaluations": {each.suite: each for each in found}}
+
+
+def _plain(value: Any) -> Any:
+    """Return YAML values as JSON has them: a date, say, becomes text."""
+    return json.loads(json.dumps(value, default=str))
+
+
+def _is_held(path: Path) -> bool:
+    """Whether a process holds the folder for writing."""
+    try:
+        descriptor = os.open(path / "lock", os.O_RDONLY)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:  # a file system without locks
+        return False
+    finally:
+        os.close(descriptor)
+    return False

@@ -1,0 +1,191 @@
+"""What a sweep's file states, checked whole against the run configuration before anything runs."""
+
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jaxleas.evaluation.suites import make_suite
+from jaxleas.labels.settings import settings_from
+from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration import load_config
+from jaxleas.training.configuration_values import require_field, require_value, with_values
+from jaxleas.training.ppo_params import SWEPT_FIELDS
+from jaxleas.types.errors import InputError
+
+# What measures must not be searched, or every trial is asked another question.
+MEASURES = ("held_out.", "final.")
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep that can run.
+
+    Attributes:
+        source: its file, for sentences.
+        config: as stated.
+        base: the run configuration that trials start from.
+        whole: names of the searched fields that hold whole numbers.
+        vectorised: whether trials train together in one program.
+    """
+
+    source: str
+    config: SweepConfig
+    base: RunConfig
+    whole: frozenset[str]
+    vectorised: bool
+
+    @property
+    def name(self) -> str:
+        """Of the study in a storage."""
+        return Path(self.source).stem
+
+    def run_config(self, values: Mapping[str, Any], seed: int) -> RunConfig:
+        """Return a training's configuration.
+
+        Args:
+            values: of the searched fields.
+            seed: of the training.
+
+        Raises:
+            InputError: the values do not fit each other.
+        """
+        return with_values(self.base, {**values, "seed": seed}, "the trial")
+
+
+def open_sweep(path: str | Path) -> Sweep:
+    """Read a sweep's file and the configuration it names.
+
+    Raises:
+        InputError: one sentence that names the file, the key, and what would do.
+    """
+    path = Path(path)
+    config = load_config(SweepConfig, path)
+    base = load_config(RunConfig, path.parent / config.config)
+    for name in config.set:
+        require_field(RunConfig, name, f"{path}: set")
+    return check_sweep(config, with_values(base, config.set, f"{path}: set"), str(path))
+
+
+def check_sweep(config: SweepConfig, base: RunConfig, source: str) -> Sweep:
+    """Return a sweep, or refuse it.
+
+    Args:
+        config: as stated.
+        base: the run configuration that trials start from.
+        source: what sentences begin with.
+
+    Raises:
+        InputError: the space names what cannot be searched, or an objective cannot be measured.
+    """
+    whole = frozenset(
+        name
+        for name, dimension in config.space.items()
+        if check_dimension(name, dimension, base, f"{source}: space")
+    )
+    _check_conditions(config.space, source)
+    for index, objective in enumerate(config.objectives):
+        if isinstance(objective, Exact):
+            _check_exact(objective, f"{source}: objectives.{index}")
+    return Sweep(source, config, base, whole, _vectorised(config, source))
+
+
+def check_dimension(name: str, dimension: Dimension, base: RunConfig, source: str) -> bool:
+    """Return whether the field holds whole numbers.
+
+    Raises:
+        InputError: it cannot be searched, or not like this.
+    """
+    field = require_field(RunConfig, name, source)
+    where = f"{source}.{name}"
+    if name == "seed":
+        raise InputError(f"{where}: training seeds are listed under seeds, not searched")
+    if name.startswith(MEASURES):
+        raise InputError(f"{where} belongs to what measures the trials: put it under set")
+    if dimension.choices is not None:
+        for choice in dimension.choices:
+            require_value(base, name, choice, where)
+        return False
+    kind = _number_type(field.info.annotation)
+    if kind is None:
+        raise InputError(f"{where}: {name} is no single number, so it has no range: give choices")
+    low, high = dimension.ends
+    for end, value in (("low", low), ("high", high), ("step", dimension.step)):
+        if kind is int and value is not None and value != int(value):
+            raise InputError(f"{where}: {end} = {value:g}, but {name} holds whole numbers")
+    for value in (low, high):
+        require_value(base, name, kind(value), where)
+    return kind is int
+
+
+def _number_type(annotation: Any) -> type | None:
+    """Return int or float for a field that holds one number, else None."""
+    if typing.get_origin(annotation) is typing.Annotated:
+        return _number_type(typing.get_args(annotation)[0])
+    return annotation if annotation in (int, float) else None
+
+
+def _check_conditions(space: Mapping[str, Dimension], source: str) -> None:
+    above: dict[str, Dimension] = {}
+    for name, dimension in space.items():
+        where = f"{source}: space.{name}.only_when"
+        for other, wanted in dimension.only_when.items():
+            if other not in above:
+                raise InputError(f"{where}: {other} does not stand above {name} in the space")
+            for value in allowed(wanted):
+                if not _can_be(above[other], value):
+                    raise InputError(f"{where}: {other} is never {value!r} in this space")
+        above[name] = dimension
+
+
+def allowed(wanted: Any) -> list[Any]:
+    """Return the values that a condition names: one or a list of several."""
+    return wanted if isinstance(wanted, list) else [wanted]
+
+
+def _can_be(dimension: Dimension, value: Any) -> bool:
+    if dimension.choices is not None:
+        return value in dimension.choices
+    low, high = dimension.ends
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and low <= value <= high
+
+
+def _check_exact(objective: Exact, where: str) -> None:
+    try:
+        settings_from(objective.planner, **objective.parameters)
+        for name in objective.suites:
+            make_suite(name, objective.starts, held_out=True)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _vectorised(config: SweepConfig, source: str) -> bool:
+    """Return whether trials train in one program; refuse it where it was asked for in vain."""
+    other = next((name for name in config.space if name not in SWEPT_FIELDS), None)
+    timed = any(
+        isinstance(each, TimeToSuccess) and each.measure == "seconds_to_success"
+        for each in config.objectives
+    )
+    if config.vectorised == "auto":
+        return other is None and config.pruner == "none" and not timed
+    if not config.vectorised:
+        return False
+    if other is not None:
+        raise InputError(
+            f"{source}: vectorised is true, but space.{other} is another program for every value:"
+            " leave vectorised out, or that field"
+        )
+    if config.pruner != "none":
+        raise InputError(
+            f"{source}: vectorised is true, but pruner = {config.pruner} ends single trials, and"
+            " those of one program end together: leave one of them out"
+        )
+    if timed:
+        raise InputError(
+            f"{source}: vectorised is true, but seconds_to_success needs trials that train alone:"
+            " steps_to_success would do"
+        )
+    return True

@@ -1,0 +1,67 @@
+"""The commands `jaxleas sweep` and `jaxleas population`."""
+
+from pathlib import Path
+from typing import Literal
+
+
+def sweep(
+    sweep: Path,
+    *,
+    out: Path,
+    storage: str | None = None,
+    workers: Literal["processes", "ray"] = "processes",
+    parallel: int | None = None,
+) -> None:
+    """Search a space of configurations; the same command goes on where it was interrupted.
+
+    Args:
+        sweep: of the search, YAML.
+        out: folder to work in.
+        storage: grpc://HOST:PORT, a database URL or FILE.log; by default a journal in the folder.
+        workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
+        parallel: trainings at the same time; by default as the file says.
+    """
+    from jaxleas.sweeps.border import open_sweep
+    from jaxleas.sweeps.progress import SweepProgress
+    from jaxleas.sweeps.results import plain_table
+    from jaxleas.sweeps.sweep import REPORT, run_sweep
+
+    opened = open_sweep(sweep)
+    progress = SweepProgress(opened)
+    try:
+        results = run_sweep(
+            opened,
+            out,
+            storage=storage,
+            workers=workers,
+            parallel=parallel,
+            on_change=progress,
+        )
+    finally:
+        progress.close()
+    print(plain_table(results, opened))
+    print(f"written: {Path(out) / REPORT}, results.csv and results.json beside it")
+
+
+def population(population: Path, *, out: Path) -> None:
+    """Train several policies in one compiled program; the same command goes on.
+
+    Args:
+        population: of the members, YAML.
+        out: folder to work in; each member's run folder is OUT/member_NN.
+    """
+    import sys
+
+    from jaxleas.sweeps.devices import use_all_cores
+    from jaxleas.sweeps.population_config import open_population
+    from jaxleas.sweeps.population_folder import hold_population
+    from jaxleas.sweeps.population_loop import train_population
+    from jaxleas.sweeps.population_table import population_table
+    from jaxleas.training.compilation import keep_compiled_programs
+
+    members = open_population(population)
+    use_all_cores()
+    keep_compiled_programs()
+    with hold_population(Path(out), members) as runs:
+        results = train_population(members, runs, Path(out), ["jaxleas", *sys.argv[1:]])
+    print(population_table(members, results))

@@ -1,0 +1,170 @@
+"""What a sweep is told: the search space, what is measured, how many trials."""
+
+import json
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, JsonValue, model_validator
+
+from jaxleas.types.strict import Strict
+
+Count = Annotated[int, Field(ge=1)]
+Seed = Annotated[int, Field(ge=0, lt=2**31)]
+Scalar = bool | int | float | str
+
+
+class Dimension(Strict):
+    """What one field of the run configuration may be: a range or choices."""
+
+    low: float | None = None
+    """Least value of a range; the field's type says whether it is of whole numbers."""
+    high: float | None = None
+    """Greatest value of a range."""
+    log: bool = False
+    """Draw the logarithm evenly."""
+    step: Annotated[float, Field(gt=0.0)] | None = None
+    """Draw only low, low + step, low + 2 step, and so on."""
+    choices: tuple[JsonValue, ...] | None = None
+    """Values of which one is drawn."""
+    only_when: dict[str, JsonValue] = Field(default_factory=dict)
+    """Drawn only when the fields named here, which stand above in the space, have these values (or
+    one of a list of values); otherwise the field keeps the base configuration's value."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Least and greatest value of a range."""
+        if self.low is None or self.high is None:
+            raise TypeError("choices have no ends")
+        return self.low, self.high
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        ends = (self.low, self.high)
+        if self.choices is None and None in ends:
+            raise ValueError("give low and high, or choices")
+        if self.choices is not None and (ends != (None, None) or self.step or self.log):
+            raise ValueError("choices go without low, high, log and step")
+        return self
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.choices is not None:
+            texts = [json.dumps(each) for each in self.choices]
+            if not texts:
+                raise ValueError("choices is empty; name at least one value")
+            twice = next((each for each in texts if texts.count(each) > 1), None)
+            if twice is not None:
+                raise ValueError(f"choices names {twice} twice")
+            return self
+        low, high = self.ends
+        if low > high:
+            raise ValueError(f"low = {low:g} is above high = {high:g}")
+        if low == high:
+            raise ValueError(
+                f"the range is empty: low and high are both {low:g}; a single value goes under set"
+            )
+        if self.log and low <= 0.0:
+            raise ValueError(f"log needs numbers above 0, but low is {low:g}")
+        if self.log and self.step is not None:
+            raise ValueError("log and step do not go together")
+        return self
+
+
+class HeldOut(Strict):
+    """Success in the examination on held-out terrain: of the best policy, the one that is kept."""
+
+    measure: Literal["held_out"] = "held_out"
+
+    @property
+    def name(self) -> str:
+        """In tables and files."""
+        return "held_out"
+
+
+class TimeToSuccess(Strict):
+    """How soon the examination is first passed with a given success."""
+
+    measure: Literal["steps_to_success", "seconds_to_success"]
+    success: Annotated[float, Field(gt=0.0, le=1.0)] = 0.9
+
+    @property
+    def name(self) -> str:
+        """In tables and files."""
+        return f"{self.measure.partition('_')[0]}_to_{100 * self.success:g}%"
+
+
+class Exact(Strict):
+    """Success under an exact contact planner, mean over cells, on held-out suites."""
+
+    measure: Literal["exact"]
+    planner: Literal["sampling", "mip", "sl1m"] = "sampling"
+    parameters: dict[str, JsonValue] = Field(default_factory=dict)
+    """Of the planner; what is not named has the planner's own default."""
+    suites: Annotated[tuple[str, ...], Field(min_length=1)] = ("transitions",)
+    starts: Count = 50
+    """A cell."""
+
+    @property
+    def name(self) -> str:
+        """In tables and files."""
+        return f"exact_{self.planner}"
+
+
+Objective = Annotated[HeldOut | TimeToSuccess | Exact, Field(discriminator="measure")]
+
+
+class SweepConfig(Strict):
+    """One sweep."""
+
+    config: str
+    """Configuration that trials start from, relative to the sweep's file."""
+    set: dict[str, Any] = Field(default_factory=dict)
+    """Fields that are changed in all trials, by dotted name."""
+    space: dict[str, Dimension]
+    """Fields that are searched, by dotted name."""
+    objectives: tuple[Objective, ...] = (HeldOut(),)
+    """What is measured; of several the best compromises are found."""
+    trials: Count = 20
+    seeds: tuple[Seed, ...] = (0,)
+    """Training seeds of every trial; its value is the mean over them."""
+    sampler: Literal["tpe", "random"] = "tpe"
+    pruner: Literal["none", "median", "hyperband"] = "none"
+    """Ends a trial early by the learning curve of its first seed; the others then are not run."""
+    startup_trials: Count = 5
+    """The median pruner ends nothing before so many trials are there."""
+    parallel: Count = 1
+    """Trainings at the same time."""
+    vectorised: bool | Literal["auto"] = "auto"
+    """Train many trials in one compiled program: possible where the space has only numbers that
+    change no shape; `auto`: where possible, no pruner is asked for and nothing but held-out
+    success is timed."""
+    members: Count = 8
+    """Trainings in one such program."""
+    seed: Seed = 0
+    """Of the sampler."""
+
+    @model_validator(mode="after")
+    def _nothing_empty(self) -> Self:
+        for name in ("space", "objectives", "seeds"):
+            if not getattr(self, name):
+                raise ValueError(f"{name} is empty: name at least one")
+        return self
+
+    @model_validator(mode="after")
+    def _seeds_differ(self) -> Self:
+        twice = next((each for each in self.seeds if self.seeds.count(each) > 1), None)
+        if twice is not None:
+            raise ValueError(f"seeds names {twice} twice: the same training again proves nothing")
+        return self
+
+    @model_validator(mode="after")
+    def _objectives_differ(self) -> Self:
+        names = [each.name for each in self.objectives]
+        twice = next((each for each in names if names.count(each) > 1), None)
+        if twice is not None:
+            raise ValueError(f"objectives measures {twice} twice")
+        if self.pruner != "none" and len(names) > 1:
+            raise ValueError(
+                f"pruner = {self.pruner} needs a single objective to compare curves by; there are"
+                f" {len(names)}: {', '.join(names)}"
+            )
+        return self

@@ -1,0 +1,128 @@
+"""A sweep's folder.
+
+sweep.yaml, sweep.json      the sweep, resolved; its name and owner
+base.yaml                   the run configuration that trials start from, resolved
+journal.log                 Optuna's memory of all trials, unless --storage names another
+trials/0007/seed_0/         run folder of trial 7 with training seed 0
+trials/0007/seed_0.json     its outcome; .job.json its job, .log what its worker said
+results.csv, results.json   the table
+report.html                 pictures
+lock                        held while a process conducts the sweep
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from uuid import uuid4
+
+from jaxleas.files import FolderLock, read_json, write_json, write_text
+from jaxleas.sweeps.border import Sweep
+from jaxleas.sweeps.config import SweepConfig
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.types.errors import InputError
+
+VERSION = 1
+_BEGINNINGS = {"lock", "sweep.yaml", "base.yaml"}
+
+
+@dataclass(frozen=True)
+class SweepFolder:
+    """A sweep's folder, held by one process.
+
+    Attributes:
+        path: of the folder, absolute.
+        owner: tells this folder's trials from those of other machines in one storage.
+    """
+
+    path: Path
+    owner: str
+    _lock: FolderLock
+
+    @property
+    def journal(self) -> Path:
+        """Optuna's memory."""
+        return self.path / "journal.log"
+
+    def trial(self, number: int) -> Path:
+        """Return the folder of one trial."""
+        return self.path / "trials" / f"{number:04d}"
+
+    def run(self, number: int, seed: int) -> Path:
+        """Return the run folder of one training."""
+        return self.trial(number) / f"seed_{seed}"
+
+    def batch(self, number: int) -> Path:
+        """Return the file of a job that trains several trials in one program."""
+        return self.path / "batches" / f"{number:04d}.json"
+
+    def close(self) -> None:
+        """Let another process conduct the sweep."""
+        self._lock.close()
+
+
+def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
+    """Make a sweep's folder, or go on in it, and hold it.
+
+    Raises:
+        InputError: it is something else's, another sweep's, or held by another process.
+    """
+    path = Path(path).absolute()
+    known = path / "sweep.json"
+    if not known.is_file():
+        require_vacant(path, _BEGINNINGS, "sweep")
+    lock = hold(path)
+    try:
+        if not known.is_file():
+            write_text(path / "sweep.yaml", to_yaml(sweep.config))
+            write_text(path / "base.yaml", to_yaml(sweep.base))
+            write_json(known, {"version": VERSION, "name": sweep.name, "owner": uuid4().hex})
+        record = read_json(known)
+        if not isinstance(record, dict) or record.get("version") != VERSION:
+            raise InputError(f"{known} is of another version; this one reads {VERSION}")
+        _require_same(path, sweep)
+        return SweepFolder(path, record["owner"], lock)
+    except BaseException:
+        lock.close()
+        raise
+
+
+def _require_same(path: Path, sweep: Sweep) -> None:
+    """Refuse another sweep; more trials and other workers may be asked for."""
+    then = load_config(SweepConfig, path / "sweep.yaml")
+    free = {"trials": 1, "parallel": 1}
+    if then.model_copy(update=free) != sweep.config.model_copy(update=free):
+        raise InputError(
+            f"{path} is a sweep with another file, {path / 'sweep.yaml'}: give that one, or"
+            " another --out"
+        )
+    if load_config(RunConfig, path / "base.yaml") != sweep.base:
+        raise InputError(
+            f"{path} was begun with another run configuration, {path / 'base.yaml'}: restore"
+            f" {sweep.config.config}, or give another --out"
+        )
+
+
+def require_vacant(path: Path, beginnings: set[str], kind: str) -> None:
+    """Refuse a folder that holds more than the beginnings of what is to be made there.
+
+    Raises:
+        InputError: it does, or it is a file.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path} is a file; --out names a folder")
+    names = {entry.name for entry in path.iterdir()} if path.is_dir() else set()
+    if {name for name in names if not name.startswith(".")} - beginnings:
+        raise InputError(f"{path} exists and is no {kind}: give another --out")
+
+
+def hold(path: Path) -> FolderLock:
+    """Make a folder and hold it until the lock is closed.
+
+    Raises:
+        InputError: it cannot be made, or another process holds it.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {path}: {error.strerror}") from error
+    return FolderLock(path, "the folder", "give another --out")

@@ -1,0 +1,197 @@
+"""What a worker of a sweep does: train one or several trainings, measure them, leave outcomes.
+
+A job is a file, and so is each outcome: whoever finds a job without its outcomes does it again,
+from the checkpoints that are there. So a worker, or all of them, may be killed at any moment.
+"""
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from jaxleas.files import read_json, write_json
+from jaxleas.types.errors import InputError, JaxleasError
+
+LIFELINE = "--lifeline"
+STOP = "stop"  # a file beside the run folder: the trial is pruned
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one training.
+
+    Attributes:
+        state: done, pruned or failed.
+        values: of the objectives, by name; none unless done.
+        reason: why it failed.
+        seconds: that it trained, resumed parts included.
+    """
+
+    state: str
+    values: dict[str, float]
+    reason: str = ""
+    seconds: float = 0.0
+
+
+class _PrunedError(JaxleasError):
+    """The sweep has seen enough of this learning curve."""
+
+
+def outcome_file(run: Path) -> Path:
+    """Return where a training's outcome is left: beside its run folder."""
+    return run.with_name(f"{run.name}.json")
+
+
+def stop_file(run: Path) -> Path:
+    """Return the file whose presence ends a training at its next examination."""
+    return run.with_name(f"{run.name}.{STOP}")
+
+
+def read_outcome(run: Path) -> Outcome | None:
+    """Return a training's outcome; None while it has none."""
+    path = outcome_file(run)
+    if not path.is_file():
+        return None
+    try:
+        return Outcome(**read_json(path))
+    except TypeError as error:
+        raise InputError(f"{path} is no outcome of a training: {error}") from error
+
+
+def write_job(path: Path, runs: Sequence[Path], configs: Sequence[str], objectives: Any) -> None:
+    """Write a job.
+
+    Args:
+        path: of the file.
+        runs: run folders of the trainings, absolute; several train as one population.
+        configs: of the trainings, as JSON.
+        objectives: to be measured, as plain JSON.
+    """
+    trainings = [
+        {"run": str(run), "config": config} for run, config in zip(runs, configs, strict=True)
+    ]
+    write_json(path, {"version": 1, "trainings": trainings, "objectives": objectives})
+
+
+def do_job(path: str | Path) -> None:
+    """Do a job: every training of it has an outcome afterwards.
+
+    Raises:
+        InterruptedRunError: a signal asked to stop; everything done is saved.
+    """
+    from pydantic import TypeAdapter
+
+    from jaxleas.sweeps.config import Objective
+    from jaxleas.training.config import RunConfig
+
+    job = read_json(path)
+    runs = [Path(each["run"]) for each in job["trainings"]]
+    configs = [
+        RunConfig.model_validate_json(each["config"], strict=True) for each in job["trainings"]
+    ]
+    objectives = TypeAdapter(list[Objective]).validate_python(job["objectives"])
+    if all(outcome_file(run).is_file() for run in runs):
+        return
+    states = (
+        _train_alone(runs[0], configs[0])
+        if len(runs) == 1
+        else _train_together(Path(path).with_suffix(""), runs, configs)
+    )
+    for run, config, (state, reason) in zip(runs, configs, states, strict=True):
+        if not outcome_file(run).is_file():
+            write_json(outcome_file(run), asdict(_outcome(run, config, objectives, state, reason)))
+
+
+def _train_alone(run: Path, config: Any) -> list[tuple[str, str]]:
+    """Return state and reason of a training in its own program."""
+    from jaxleas.sweeps.run_folders import hold_run_folder
+    from jaxleas.training.loop import NonFiniteError, train
+
+    def look() -> None:
+        if stop_file(run).is_file():
+            raise _PrunedError(f"{run} was pruned")
+
+    try:
+        with hold_run_folder(run, config, sys.argv) as folder:
+            train(config, folder, on_examined=look)
+    except _PrunedError:
+        return [("pruned", "")]
+    except NonFiniteError as error:
+        return [("failed", str(error))]
+    return [("done", "")]
+
+
+def _train_together(home: Path, runs: list[Path], configs: list[Any]) -> list[tuple[str, str]]:
+    """Return states and reasons of trainings in one program."""
+    from jaxleas.sweeps.population_config import Members
+    from jaxleas.sweeps.population_loop import train_population
+
+    members = Members(tuple(configs), tuple({} for _ in configs))
+    results = train_population(members, runs, home, sys.argv)
+    return [("failed" if each.failure else "done", each.failure) for each in results]
+
+
+def _outcome(run: Path, config: Any, objectives: Any, state: str, reason: str) -> Outcome:
+    from jaxleas.sweeps.objectives import measure
+    from jaxleas.training.metrics import read_metrics
+
+    metrics = run / "metrics.jsonl"
+    rows = read_metrics(metrics) if metrics.is_file() else []
+    seconds = rows[-1]["seconds"] if rows else 0.0
+    if state != "done":
+        return Outcome(state, {}, reason, seconds)
+    total = config.ppo.updates * config.ppo.batch
+    return Outcome("done", measure(run, objectives, total), "", seconds)
+
+
+def _die_with_parent() -> None:
+    """End this process when whoever started it is gone: their end of standard input closes."""
+
+    def wait_for_the_end() -> None:
+        sys.stdin.buffer.read()
+        os._exit(1)  # at once, as a kill would: everything that counts is on disk
+
+    threading.Thread(target=wait_for_the_end, daemon=True).start()
+
+
+def work(path: str | Path) -> None:
+    """Do a job in a process that has touched no device yet."""
+    from jaxleas.sweeps.devices import use_all_cores
+    from jaxleas.training.compilation import keep_compiled_programs
+
+    if len(read_json(path)["trainings"]) > 1:
+        use_all_cores()
+    keep_compiled_programs()
+    patiently(do_job, path)
+
+
+def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 90.0) -> None:
+    """Do a job, waiting where its run folder is still held by a worker that is about to die."""
+    until = time.monotonic() + seconds
+    while True:
+        try:
+            return function(path)
+        except InputError as error:
+            if "is in use by" not in str(error) or time.monotonic() > until:
+                raise
+            time.sleep(0.5)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Do the job that the first argument names; return the exit code."""
+    if LIFELINE in arguments:
+        _die_with_parent()
+    try:
+        work(arguments[0])
+    except JaxleasError as error:  # into the job's log
+        print(f"{type(error).__name__}: {error}")
+        return getattr(error, "exit_code", 2)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

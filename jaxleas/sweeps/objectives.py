@@ -1,0 +1,92 @@
+"""What trials are measured by, read from a training's run folder."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.exact import judge_exact, walker
+from jaxleas.evaluation.suites import make_suite
+from jaxleas.guide.leas import leas
+from jaxleas.labels import Judge
+from jaxleas.labels.settings import settings_from
+from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
+from jaxleas.training.metrics import read_metrics
+from jaxleas.training.policy import read_policy
+
+SUCCESS = "held_out/reached"
+POLICY_FILE = "policy.npz"
+
+
+def is_maximised(objective: Objective) -> bool:
+    """Return whether more is better: of success, not of time."""
+    return not isinstance(objective, TimeToSuccess)
+
+
+def learning_curve(run: Path) -> list[tuple[int, float]]:
+    """Return (steps, held-out success) at every examination so far."""
+    metrics = run / "metrics.jsonl"
+    rows = read_metrics(metrics) if metrics.is_file() else []
+    return [(row["step"], row[SUCCESS]) for row in rows if row.get(SUCCESS) is not None]
+
+
+def measure(run: Path, objectives: Sequence[Objective], total_steps: int) -> dict[str, float]:
+    """Return each objective's value of a finished training, by name.
+
+    Args:
+        run: its run folder.
+        objectives: to be measured.
+        total_steps: of the training.
+
+    Raises:
+        InputError: the run folder lacks something.
+    """
+    values: dict[str, float] = {}
+    for objective in objectives:
+        if isinstance(objective, HeldOut):
+            values[objective.name] = max(success for _, success in learning_curve(run))
+        elif isinstance(objective, TimeToSuccess):
+            values[objective.name] = time_to_success(run, objective, total_steps)
+        else:
+            values[objective.name] = _exact_success(run, objective)
+    return values
+
+
+def time_to_success(run: Path, objective: TimeToSuccess, total_steps: int) -> float:
+    """Return the environment steps, or seconds, after which the success was first there.
+
+    Where it never was, the whole training's time and, on top, the part of it by which the best
+    success fell short: so that the sampler still learns which trial came nearer. A value above the
+    whole training's time therefore means *never*.
+    """
+    rows = [row for row in read_metrics(run / "metrics.jsonl") if row.get(SUCCESS) is not None]
+    key = "step" if objective.measure == "steps_to_success" else "seconds"
+    for row in rows:
+        if row[SUCCESS] >= objective.success:
+            return float(row[key])
+    whole = float(total_steps if key == "step" else rows[-1]["seconds"])
+    best = max(row[SUCCESS] for row in rows)
+    return whole * (2.0 - best / objective.success)
+
+
+def never(objective: Objective, value: float, total: float) -> bool:
+    """Return whether a time says that the success was never there."""
+    return isinstance(objective, TimeToSuccess) and value > total
+
+
+def _exact_success(run: Path, objective: Exact) -> float:
+    """Return the mean share of starts that reach their goal with contacts all the way."""
+    policy = read_policy(run / POLICY_FILE)
+    env = SteeringEnv(policy.config)
+    settings: Any = settings_from(objective.planner, **objective.parameters)
+    shares = []
+    with Judge(objective.planner, settings) as judge:
+        for name in objective.suites:
+            cells = judge_exact(
+                env,
+                {"policy": walker(env, leas(env, policy))},
+                make_suite(name, objective.starts, held_out=True),
+                {objective.planner: judge},
+            )
+            shares += [cell.planned or 0.0 for cell in cells]
+    return sum(shares) / len(shares)

@@ -1,0 +1,166 @@
+"""A population: trainings that differ in seeds and numbers only, in one compiled program.
+
+Devices divide the members, and the terrain is there once. On a processor the members of a device
+take turns inside the program (`lax.map`): vectorised they took twice as long, because batches of
+small matrix products run on one thread. Other devices do them all at once (`vmap`).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import jax
+import numpy as np
+from jax import Array
+from jax.sharding import Mesh, NamedSharding, PartitionSpec
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.world import World
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration_fields import fields_of
+from jaxleas.training.held_out import make_examination
+from jaxleas.training.networks import make_networks
+from jaxleas.training.policy import SteeringPolicy, policy_of
+from jaxleas.training.ppo import make_train_step
+from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
+from jaxleas.training.train_state import TrainState, initial_state
+from jaxleas.training.worlds import held_out_world, training_world
+from jaxleas.types.errors import InputError
+
+AXIS = "members"
+Metrics = dict[str, Array]
+
+
+@dataclass
+class Population:
+    """The compiled pieces of a population.
+
+    Attributes:
+        configs: of the members; they differ in the seed and in `SWEPT_FIELDS` alone.
+        env: the task.
+        world: terrains to train on, shared by all.
+        held_out: terrains of the examination, likewise.
+        train_step: (world, states, params) -> (states, metrics [members]); donates the states.
+        examine: (held-out world, normaliser, policy) -> fractions [members].
+        fresh_states: makes the states before the first update; every array [members, ...].
+    """
+
+    configs: Sequence[RunConfig]
+    env: SteeringEnv = field(init=False)
+    world: World = field(init=False)
+    held_out: World = field(init=False)
+    train_step: Callable[[World, TrainState, PpoParams], tuple[TrainState, Metrics]] = field(
+        init=False
+    )
+    examine: Callable[[World, Any, Any], Metrics] = field(init=False)
+    fresh_states: Callable[[], TrainState] = field(init=False)
+
+    def __post_init__(self) -> None:
+        config = require_one_program(self.configs)
+        mesh = _mesh(len(self.configs))
+        whole = NamedSharding(mesh, PartitionSpec())
+        self._divided = NamedSharding(mesh, PartitionSpec(AXIS))
+        self.env = SteeringEnv(config.env)
+        self.world = jax.device_put(training_world(config), whole)
+        self.held_out = jax.device_put(held_out_world(config), whole)
+        networks = make_networks(config.network, self.env)
+        step = make_train_step(config, self.env)
+        examine = make_examination(config, self.env, networks)
+
+        def advance(world: World, states: TrainState, params: PpoParams):
+            return each_member(lambda member: step(world, *member), (states, params))
+
+        def examine_all(world: World, normaliser: Any, policy: Any) -> Metrics:
+            return each_member(lambda member: examine(world, *member), (normaliser, policy))
+
+        def begin(world: World, seeds: Array) -> TrainState:
+            return each_member(
+                lambda seed: initial_state(config, self.env, world, networks, seed), seeds
+            )
+
+        options = _compiler_options(mesh)
+        self.train_step = jax.jit(
+            _each_device(advance, mesh, 2), donate_argnums=1, compiler_options=options
+        )
+        self.examine = jax.jit(_each_device(examine_all, mesh, 2), compiler_options=options)
+        compiled = jax.jit(_each_device(begin, mesh, 1))
+        seeds = np.array([each.seed for each in self.configs], np.int32)
+        self.fresh_states = lambda: compiled(self.world, self.place(seeds))
+
+    def place(self, tree: Any) -> Any:
+        """Divide arrays [members, ...] among the devices."""
+        return jax.tree.map(lambda leaf: jax.device_put(leaf, self._divided), tree)
+
+    def policy(self, states: TrainState, member: int) -> SteeringPolicy:
+        """Return a member's policy: the averaged actor, with the member's own configuration."""
+        one = member_of((states.normaliser, states.averaged), member)
+        config = self.configs[member]
+        policy = policy_of(self.env, config.network.activation, *one)
+        return policy.replace(config=config.env)  # type: ignore[attr-defined]
+
+
+def member_of(tree: Any, member: int) -> Any:
+    """Return one member's part of arrays [members, ...]."""
+    return jax.tree.map(lambda leaf: leaf[member], tree)
+
+
+def require_one_program(configs: Sequence[RunConfig]) -> RunConfig:
+    """Return what the members have in common: the first one's configuration.
+
+    Raises:
+        InputError: they differ in a field that changes the program, or there are none.
+    """
+    if not configs:
+        raise InputError("a population needs at least one member")
+    first = configs[0]
+    same = {"seed", *SWEPT_FIELDS}
+    for index, other in enumerate(configs[1:], start=1):
+        for each in fields_of(RunConfig):
+            if each.section is not None or each.name in same:
+                continue
+            left, right = value_of(first, each.name), value_of(other, each.name)
+            if left != right:
+                raise InputError(
+                    f"members 0 and {index} differ in {each.name} ({left!r} and {right!r}), which"
+                    f" is another program; they may differ in seed, {', '.join(SWEPT_FIELDS)}"
+                )
+    return first
+
+
+def value_of(config: Any, name: str) -> Any:
+    """Return a field's value by its dotted name."""
+    for part in name.split("."):
+        config = getattr(config, part)
+    return config
+
+
+def each_member(function: Callable[[Any], Any], members: Any) -> Any:
+    """Return what `function` makes of every member of arrays [members, ...]."""
+    if jax.default_backend() == "cpu":
+        return jax.lax.map(function, members)
+    return jax.vmap(function)(members)
+
+
+def _mesh(members: int) -> Mesh:
+    """Return as many of this process's devices as divide the members evenly."""
+    devices = jax.local_devices()
+    count = next(n for n in range(min(members, len(devices)), 0, -1) if members % n == 0)
+    return Mesh(np.array(devices[:count]), (AXIS,))
+
+
+def _compiler_options(mesh: Mesh) -> dict[str, Any] | None:
+    """Give each core its own members, rather than all cores a part of every matrix product."""
+    several_cores = jax.default_backend() == "cpu" and mesh.size > 1
+    return {"xla_cpu_multi_thread_eigen": False} if several_cores else None
+
+
+def _each_device(function: Callable, mesh: Mesh, arguments: int) -> Callable:
+    """Return `function`(world, ...) run by each device on its own members."""
+    divided = PartitionSpec(AXIS)
+    return jax.shard_map(
+        function,
+        mesh=mesh,
+        in_specs=(PartitionSpec(), *[divided] * arguments),
+        out_specs=divided,
+        check_vma=False,
+    )

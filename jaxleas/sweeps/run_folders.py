@@ -1,0 +1,44 @@
+"""Run folders that may be there already, whole or cut short by a kill."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jaxleas.training.config import RunConfig
+from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.run_folder import RunFolder
+from jaxleas.types.errors import InputError
+
+# What a run folder holds before the record that says it is whole.
+_BEGINNINGS = {"lock", "config.yaml", "provenance.diff"}
+
+
+def hold_run_folder(path: Path, config: RunConfig, command: Sequence[str]) -> RunFolder:
+    """Make a training's run folder, or go on in it, and hold it for writing.
+
+    One whose making was cut short is made again.
+
+    Args:
+        path: of the folder.
+        config: of the training.
+        command: that started it.
+
+    Raises:
+        InputError: the folder is another's, or in use.
+    """
+    if not (path / "provenance.json").is_file():
+        if path.is_dir():
+            _clear_beginnings(path)
+        return RunFolder.create(path, to_yaml(config), command)
+    run = RunFolder.open(path, writing=True, needs_checkpoint=False)
+    if load_config(RunConfig, run.config) != config:
+        run.close()
+        raise InputError(f"{path} is the run folder of another configuration")
+    return run
+
+
+def _clear_beginnings(path: Path) -> None:
+    names = {entry.name for entry in path.iterdir()}
+    ours = {name for name in names if name in _BEGINNINGS or name.startswith(".")}
+    if names == ours:
+        for name in names - {"lock"}:
+            (path / name).unlink()

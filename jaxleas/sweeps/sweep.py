@@ -1,0 +1,57 @@
+"""A sweep from its file to its report."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from jaxleas.files import write_text
+from jaxleas.sweeps.border import Sweep, open_sweep
+from jaxleas.sweeps.conductor import Conductor
+from jaxleas.sweeps.folder import open_folder
+from jaxleas.sweeps.report import report_html
+from jaxleas.sweeps.results import TrialResult
+from jaxleas.sweeps.runners import engage
+from jaxleas.sweeps.storage import require_optuna
+from jaxleas.sweeps.study import Study
+
+REPORT = "report.html"
+
+
+def run_sweep(
+    sweep: Sweep | str | Path,
+    out: str | Path,
+    *,
+    storage: str | None = None,
+    workers: str = "processes",
+    parallel: int | None = None,
+    on_change: Callable[[list[TrialResult], int], None] = lambda results, running: None,
+) -> list[TrialResult]:
+    """Conduct a sweep to its end; in a folder where it was begun, go on.
+
+    Args:
+        sweep: or its file.
+        out: folder to work in.
+        storage: of Optuna: grpc://HOST:PORT, a database URL, a journal FILE.log; by default a
+            journal in the folder.
+        workers: processes, or ray.
+        parallel: jobs at the same time; by default as the sweep says.
+        on_change: told all results so far and the number of running jobs whenever that changed.
+
+    Returns:
+        The results of all trials, by number.
+
+    Raises:
+        InputError: sweep, folder, storage or workers cannot be used.
+        InterruptedSweepError: a signal asked to stop; the same call goes on.
+    """
+    require_optuna()
+    sweep = sweep if isinstance(sweep, Sweep) else open_sweep(sweep)
+    folder = open_folder(Path(out), sweep)
+    try:
+        study = Study(sweep, folder, storage)
+        runner = engage(workers, sweep.config.parallel if parallel is None else parallel)
+        results = Conductor(sweep, folder, study, runner, on_change).run()
+        page = report_html(sweep, results, study.importance(), folder)
+        write_text(folder.path / REPORT, page)
+        return results
+    finally:
+        folder.close()

@@ -1,0 +1,77 @@
+"""Single fields of a configuration by their dotted names: looked up, and given other values."""
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from jaxleas.training.configuration import hint, merge, validate
+from jaxleas.training.configuration_fields import Field, fields_of
+from jaxleas.types.errors import InputError
+from jaxleas.types.strict import Strict
+
+Model = TypeVar("Model", bound=Strict)
+
+
+def require_field(model: type[Strict], name: str, source: str) -> Field:
+    """Return the field of this dotted name.
+
+    Args:
+        model: the kind of configuration.
+        name: as in `ppo.learning_rate`.
+        source: what the sentence begins with: where the name was given.
+
+    Raises:
+        InputError: there is no such field (with the nearest there is), or it is a whole section.
+    """
+    fields = {field.name: field for field in fields_of(model)}
+    if name not in fields:
+        raise InputError(f"{source}: there is no {name}{hint(name, list(fields))}")
+    if fields[name].section is not None:
+        inner = [each for each in fields if each.startswith(f"{name}.")]
+        raise InputError(f"{source}: {name} is a section: give a field of it, such as {inner[0]}")
+    return fields[name]
+
+
+def with_values(config: Model, values: Mapping[str, Any], source: str) -> Model:
+    """Return a configuration with some fields changed, validated as if a file had stated them.
+
+    Args:
+        config: to begin with.
+        values: by dotted name.
+        source: what the sentence begins with: where the values were given.
+
+    Raises:
+        InputError: a value does not fit its field, or the fields do not fit each other.
+    """
+    stated: dict[str, Any] = {}
+    for name, value in values.items():
+        for part in reversed(name.split(".")):
+            value = {part: value}
+        stated = merge(stated, value)
+    base = config.model_dump(mode="json")
+    return validate(type(config), [("the base configuration", base), (source, stated)])
+
+
+def require_value(config: Strict, name: str, value: Any, source: str) -> None:
+    """Refuse a value that its field can never have.
+
+    A rule about several fields at once may be broken: another may change along with this one.
+
+    Args:
+        config: to try it in.
+        name: of the field, dotted.
+        value: to be tried.
+        source: what the sentence begins with.
+
+    Raises:
+        InputError: as `with_values`, for this field alone.
+    """
+    try:
+        with_values(config, {name: value}, source)
+    except InputError as refusal:
+        cause = refusal.__cause__
+        errors = cause.errors() if isinstance(cause, ValidationError) else []
+        parts = name.split(".")
+        if any([str(part) for part in error["loc"]][: len(parts)] == parts for error in errors):
+            raise

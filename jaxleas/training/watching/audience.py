@@ -1,0 +1,113 @@
+"""All watchers of a run, each behind a thread of its own."""
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from jaxleas.training.watching.watcher import Status, Watcher
+
+MOST_WAITING = 10_000
+"""Rows that wait for a slow watcher; later ones it never sees."""
+FAREWELL = 30.0
+"""Time for the watchers to finish when the run ends [s]."""
+
+Call = Callable[[], None]
+
+
+class Audience:
+    """Tells every watcher what the run logs, without ever waiting for one or failing with it.
+
+    A watcher that fails is named in one sentence and told nothing more. One that cannot follow
+    loses rows, which is said once. `metrics.jsonl` holds every row all the same.
+    """
+
+    def __init__(
+        self,
+        watchers: Mapping[str, Watcher],
+        say: Callable[[str], None],
+        farewell: float = FAREWELL,
+    ) -> None:
+        """Take seats.
+
+        Args:
+            watchers: by name.
+            say: told a sentence about a watcher that fails; called from other threads.
+            farewell: time for all of them to finish at the end [s].
+        """
+        self._seats = [_Seat(name, watcher, say) for name, watcher in watchers.items()]
+        self._say = say
+        self._farewell = farewell
+
+    def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
+        """Tell all that the run begins."""
+        for seat in self._seats:
+            seat.tell(partial(seat.watcher.begin, config, name, resumed_after))
+
+    def row(self, step: int, metrics: Mapping[str, float]) -> None:
+        """Tell all a row."""
+        for seat in self._seats:
+            seat.tell(partial(seat.watcher.row, step, metrics))
+
+    def end(self, status: Status) -> None:
+        """Tell all that the run is over; wait a moment for them to finish."""
+        deadline = time.monotonic() + self._farewell
+        for seat in self._seats:
+            seat.tell(partial(seat.watcher.end, status))
+            seat.close()
+        for seat in self._seats:
+            if not seat.leave(max(deadline - time.monotonic(), 0.0)):
+                self._say(
+                    f"{seat.name} is not done after {self._farewell:g} s and is left alone:"
+                    " metrics.jsonl holds every row"
+                )
+
+
+class _Seat:
+    """One watcher, its thread and what it has yet to be told."""
+
+    def __init__(self, name: str, watcher: Watcher, say: Callable[[str], None]) -> None:
+        self.name, self.watcher = name, watcher
+        self._say = say
+        self._waiting: queue.Queue[Call | None] = queue.Queue(MOST_WAITING)
+        self._gone = self._late = False
+        # A daemon: a watcher that hangs must not keep the process from ending.
+        self._thread = threading.Thread(target=self._follow, name=f"watch {name}", daemon=True)
+        self._thread.start()
+
+    def tell(self, call: Call) -> None:
+        if self._gone:
+            return
+        try:
+            self._waiting.put_nowait(call)
+        except queue.Full:
+            if not self._late:
+                self._late = True
+                self._say(f"{self.name} cannot follow and loses rows: metrics.jsonl holds them")
+
+    def close(self) -> None:
+        """Say that nothing more will come, even to one with no room to be told."""
+        while self._thread.is_alive():
+            try:
+                return self._waiting.put_nowait(None)
+            except queue.Full:
+                self._waiting.get_nowait()
+
+    def leave(self, seconds: float) -> bool:
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
+
+    def _follow(self) -> None:
+        while (call := self._waiting.get()) is not None:
+            try:
+                call()
+            except Exception as error:  # whatever somebody else's client raises
+                self._gone = True
+                reason = " ".join(str(error).split())[:200] or type(error).__name__
+                self._say(
+                    f"{self.name} failed and is told nothing more: {reason} (training goes on,"
+                    " metrics.jsonl holds every row)"
+                )
+                return

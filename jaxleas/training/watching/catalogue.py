@@ -1,0 +1,50 @@
+"""Watchers by name."""
+
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from jaxleas.training.watching.watcher import Watcher
+from jaxleas.types.errors import InputError
+
+# Name -> (the client it needs, its module here, its class). Nothing is imported before it is asked
+# for: the clients take seconds.
+WATCHERS = {
+    "tensorboard": ("tensorboardX", "tensorboard_files", "TensorBoardWatcher"),
+    "wandb": ("wandb", "wandb_run", "WandbWatcher"),
+    "mlflow": ("mlflow", "mlflow_run", "MlflowWatcher"),
+}
+
+
+def require_watchers(names: Sequence[str]) -> None:
+    """Refuse watchers that cannot be had, before anything is computed or written.
+
+    Raises:
+        InputError: a client is not installed, or cannot be used as it is set up.
+    """
+    for name in names:
+        client, _, _ = WATCHERS[name]
+        try:
+            module = import_module(client)
+        except ImportError as error:
+            raise InputError(
+                f"watch: {name} needs the extra: pip install 'jaxleas[{name}]', or leave it out"
+            ) from error
+        check = getattr(_module(name), "require_usable", None)
+        if check is not None:
+            check(module)
+
+
+def open_watchers(names: Sequence[str], folder: str | Path) -> dict[str, Watcher]:
+    """Return watchers of a run folder, not told anything yet.
+
+    Raises:
+        InputError: a client is not installed, or cannot be used as it is set up.
+    """
+    require_watchers(names)
+    return {name: getattr(_module(name), WATCHERS[name][2])(Path(folder)) for name in names}
+
+
+def _module(name: str) -> ModuleType:
+    return import_module(f"jaxleas.training.watching.{WATCHERS[name][1]}")

@@ -1,0 +1,204 @@
+"""A contact planner of the user's own, from a module in the working folder to verdicts."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from jaxleas import cli
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.files import read_json
+from jaxleas.guide.files import write_guide_paths
+from jaxleas.labels import Judge, Outcome, OwnPlanner, read_verdicts
+from jaxleas.labels.own_planner import judge_by_own, load_planner, require_said
+from jaxleas.labels.settings import settings_from
+from jaxleas.surrogates.label_files import read_labels
+from jaxleas.terrain.scene import write_scene
+from jaxleas.types import InputError
+from tests.contacts.sampling.worlds import hole, straight
+
+# Gets as far as the ground goes under the root; its answers can be spoilt.
+MODULE = """
+import numpy as np
+from jaxleas.labels import Outcome, OwnPlanner
+
+class Walker(OwnPlanner):
+    keep_every: int = 4
+    furthest: float = 1.0
+
+    def judge(self, scene, path):
+        far = np.flatnonzero(path.position[:, 0] > self.furthest)
+        if len(far) == 0:
+            return Outcome(len(path) - 1, steps=len(path) // self.keep_every)
+        return Outcome(int(far[0]) - 1, steps=2, reason="too far")
+
+something = 3
+"""
+PATHS = [straight(0.4 + 0.5 * n, y=0.1 * n) for n in range(5)]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    (tmp_path / "walkers_of_mine.py").write_text(MODULE)
+    write_guide_paths(tmp_path / "walks.npz", PATHS, ["reached"] * 5)
+    write_scene(tmp_path / "hole.json", hole())
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    yield tmp_path
+    sys.modules.pop("walkers_of_mine", None)
+
+
+NAME = "walkers_of_mine:Walker"
+COMMAND = ["label", "walks.npz", "--scene", "hole.json", "--planner", NAME]
+
+
+def expected(furthest: float) -> list[int]:
+    """Return last indices, one loop a path."""
+    found = []
+    for path in PATHS:
+        last = len(path) - 1
+        for index, (x, _, _) in enumerate(path.position):
+            if x > furthest:
+                last = index - 1
+                break
+        found.append(last)
+    return found
+
+
+def test_it_labels_and_its_labels_are_read(here) -> None:
+    cli.run([*COMMAND, "--parameters", "furthest=1.21", "--out", "labels", "--processes", "1"])
+    found = read_verdicts("labels")
+    assert [verdict.last_index for _, verdict in found] == expected(1.21)
+    successes = [verdict.success for _, verdict in found]
+    assert successes == [last == len(p) - 1 for last, p in zip(expected(1.21), PATHS, strict=True)]
+    assert {*successes} == {True, False}
+    provenance = found[0][0]
+    assert provenance["planner"] == NAME
+    assert provenance["parameters"] == {"keep_every": 4, "furthest": 1.21}
+    labels = read_labels([here / "labels"], [here], 0.1)
+    assert (labels.planner, len(labels.walks)) == (NAME, 5)
+    for number, (path, last) in enumerate(zip(PATHS, expected(1.21), strict=True)):
+        reached = sum(index <= last for index in range(0, len(path), 4))
+        whole = last == len(path) - 1
+        assert labels.walks.failed_at[number] == (-1 if whole else reached)
+
+
+def test_changed_code_or_settings_are_not_mixed_in(here) -> None:
+    cli.run([*COMMAND, "--out", "labels", "--processes", "1"])
+    with pytest.raises(InputError, match="made with other parameters"):
+        cli.run([*COMMAND, "--parameters", "furthest=0.5", "--out", "labels"])
+    (here / "walkers_of_mine.py").write_text(MODULE + "\n# changed\n")
+    with pytest.raises(InputError, match="made with other source"):
+        cli.run([*COMMAND, "--out", "labels"])
+
+
+def test_workers_elsewhere_import_it_too(here) -> None:
+    settings = settings_from(NAME, furthest=1.21)
+    with Judge(NAME, settings, processes=2) as judge:
+        verdicts = judge.judge([hole()], PATHS, [0] * 5)
+    assert [verdict.last_index for verdict in verdicts] == expected(1.21)
+
+
+class Spoilt(OwnPlanner):
+    answer: int = 0
+
+    def judge(self, scene, path):
+        return [
+            {"last_index": 3},
+            Outcome(last_index=len(path)),
+            Outcome(last_index=-2, reason="no"),
+            Outcome(last_index=1.5, reason="no"),
+            Outcome(last_index=len(path) - 1, reason="but still"),
+            Outcome(last_index=2),
+            Outcome(last_index=2, steps=-1, reason="no"),
+            Outcome(last_index=2, decided=False),
+        ][self.answer]
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    enumerate(
+        [
+            "judge returned dict, not jaxleas.labels.Outcome",
+            r"last_index is \d+, but it should be -1 to",
+            "last_index is -2, but it should be",
+            "last_index is 1.5, not a whole number",
+            "the reason is 'but still'",
+            "the reason is ''",
+            "steps is -1",
+            "the reason is ''",
+        ]
+    ),
+)
+def test_an_answer_that_cannot_be_is_refused(answer: int, message: str) -> None:
+    with pytest.raises(InputError, match=rf"Spoilt on guide path 7: {message}"):
+        judge_by_own(hole(), PATHS[0], Spoilt(answer=answer), 7)
+
+
+def test_what_is_counted(here) -> None:
+    planner = load_planner(NAME)(furthest=1.21)
+    path = PATHS[-1]
+    verdict = judge_by_own(hole(), path, planner, 3)
+    last = expected(1.21)[-1]
+    kept = list(range(0, len(path), 4))
+    assert verdict.reached == pytest.approx(sum(index <= last for index in kept) / len(kept))
+    way = np.linalg.norm(np.diff(path.position[: last + 1], axis=0), axis=1).sum()
+    assert verdict.mean_step == pytest.approx(way / 2)
+    assert (verdict.path, verdict.length, verdict.success) == (3, len(path), False)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("nowhere_at_all:Walker", "cannot be loaded: No module named 'nowhere_at_all'"),
+        ("walkers_of_mine:Runner", "cannot be loaded: module 'walkers_of_mine' has no attribute"),
+        ("walkers_of_mine:something", "is no planner: derive a class from"),
+        ("walkers_of_mine:", "cannot be loaded"),
+        (":Walker", "cannot be loaded"),
+        ("walker", "there is no planner 'walker' for labels; there are sampling, mip, sl1m, and"),
+    ],
+)
+def test_a_planner_that_is_none_is_refused(here, name: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        cli.run(["label", "walks.npz", "--scene", "hole.json", "--planner", name, "--out", "x"])
+    assert not (here / "x").exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["furthest=far"], "--furthest far: input should be a valid number"),
+        (["nearest=1"], "--nearest is for the planner of none"),
+        (["furthest"], "they look like longest_step=0.3"),
+        (["furthest=[1"], "is not YAML"),
+    ],
+)
+def test_wrong_settings_are_refused(here, given: list[str], message: str) -> None:
+    with pytest.raises(InputError, match=message.replace("[", r"\[")):
+        cli.run([*COMMAND, "--out", "x", "--parameters", *given])
+
+
+def test_a_file_alone_runs_no_code(here) -> None:
+    (here / "evil.py").write_text("raise SystemExit('it ran')")
+    (here / "d.yaml").write_text("planner: evil:Walker")
+    with pytest.raises(InputError, match="which is code: if you trust it, give --planner"):
+        cli.run(["distill", "d.yaml", "--out", "out"])
+    assert "evil" not in sys.modules
+    with pytest.raises(InputError, match="asks for the planner evil:Walker, not for mip"):
+        cli.run(["distill", "d.yaml", "--planner", "mip", "--out", "out"])
+    assert not (here / "out").exists()
+    require_said(here / "d.yaml", "sampling", None)
+    with pytest.raises(ValueError, match="planner"):
+        DistillationConfig(planner="os.system")
+
+
+def test_a_verdict_file_that_names_code_only_tells_its_name(here) -> None:
+    cli.run([*COMMAND, "--out", "labels", "--processes", "1"])
+    (file,) = (here / "labels").rglob("verdicts_*.json")
+    content = read_json(file)
+    content["provenance"]["planner"] = "evil:Walker"
+    file.write_text(json.dumps(content))
+    (here / "evil.py").write_text("raise SystemExit('it ran')")
+    assert read_labels([here / "labels"], [here], 0.1).planner == "evil:Walker"
+    assert "evil" not in sys.modules
