@@ -4,17 +4,22 @@ from pathlib import Path
 from typing import Literal
 
 from jaxleas.contacts.certificate import certify
+from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
 from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
-from jaxleas.contacts.planners import Cost, plan_mip, plan_sl1m
+from jaxleas.contacts.planners import PLANNERS, Cost, plan_mip, plan_sl1m
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
-from jaxleas.terrain.scene import Scene, read_scene
+from jaxleas.terrain.mesh_scene import load_scene
+from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError, JaxleasError
 
 Planner = Literal["mip", "sl1m", "sampling"]
 EVERY: dict[str, int] = {"mip": 14, "sl1m": 14, "sampling": 5}
 """Which configurations of the guide are kept: T 5.2.3, T 4.1.4."""
+
+FOR_PICTURE = 10.0
+"""Most time spent on drawing how far a failed plan could go [s]."""
 
 
 class NotCertifiedError(JaxleasError):
@@ -38,7 +43,7 @@ def plan(
 
     Args:
         problem: the contact problem, .json.
-        planner: mip (exact) or sl1m (fast, incomplete); sampling needs a guide (jaxleas contacts).
+        planner: mip (exact), sl1m (fast, incomplete) or sampling (follows the phases' roots).
         out: the plan, .json; one without footholds, but with the reason, when there is no plan.
         time_limit: [s]; a plan not found in time has the status time_limit.
         cost: of the mip: footholds near the guide's reference ones, by L1 or squared distance.
@@ -48,10 +53,16 @@ def plan(
     """
     _require_writable_names(out, picture)
     if planner == "sampling":
-        raise InputError(
-            "the sampling planner follows a guide path among obstacles, and a contact problem has"
-            " neither: use jaxleas contacts GUIDE.npz --scene SCENE.json --planner sampling"
-        )
+        changed = {
+            "cost": cost != "none",
+            "without-guide": without_guide,
+            "max-combinations": max_combinations != 2000,
+        }
+        _require_none_of(changed)
+        asked = read_problem(problem)
+        followed, crossed = guide_from_problem(asked), scene_of_problem(asked)
+        every = EVERY["sampling"]
+        return _sample_and_write(followed, crossed, asked.robot, every, time_limit, out, picture)
     read = read_problem(problem)
     if without_guide:
         read = read.without_guide()
@@ -71,9 +82,9 @@ def check(
 
     Args:
         plan: the contact plan, .json.
-        problem: the contact problem it answers, .json (mip and sl1m).
+        problem: the contact problem it answers, .json; of sampling, whose roots it follows.
         guide: the guide path it follows, .npz (sampling).
-        scene: the scene it crosses, .json (sampling).
+        scene: the scene it crosses, .json or a mesh (sampling).
         query: which path of the guide's file.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
@@ -108,18 +119,22 @@ def _check_postures(
     from jaxleas.contacts.plan_sampling import walked_problem
     from jaxleas.contacts.posture_certificate import certify_postures
 
-    if problem is not None or guide is None or scene is None:
+    if problem is not None and guide is None and scene is None:
+        asked = read_problem(problem)
+        followed, crossed = guide_from_problem(asked), scene_of_problem(asked)
+    elif problem is None and guide is not None and scene is not None:
+        followed, crossed = read_guide_path(guide, query), load_scene(scene)
+    else:
         raise InputError(
             f"{path} is of the sampling planner: it is checked against its guide and scene, with"
-            " --guide GUIDE.npz --scene SCENE.json"
+            " --guide GUIDE.npz --scene SCENE.json, or against --problem PROBLEM.json"
         )
-    followed, crossed = read_guide_path(guide, query), read_scene(scene)
     certificate = certify_postures(read, followed, crossed)
     if picture is not None:
         _draw(picture, walked_problem(read, followed, crossed), read, followed)
     if not certificate.certified:
         raise NotCertifiedError(
-            f"{path} is no plan for {guide} on {scene}: {certificate.complaint}"
+            f"{path} is no plan for {problem or f'{guide} on {scene}'}: {certificate.complaint}"
         )
     worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"
     print(
@@ -151,7 +166,7 @@ def contacts(
 
     Args:
         guide: the guide path, .npz.
-        scene: its terrain as polygons, .json.
+        scene: its terrain as polygons: .json scene, or .stl or .obj mesh in metres, z up.
         planner: mip (exact), sl1m (fast, incomplete) or sampling (acyclic, follows the guide).
         out: the plan, .json.
         problem: write the contact problem here too, .json (mip and sl1m).
@@ -170,7 +185,7 @@ def contacts(
     from jaxleas.contacts.guide_file import read_guide_path
 
     _require_writable_names(out, picture)
-    followed, crossed = read_guide_path(guide, query), read_scene(scene)
+    followed, crossed = read_guide_path(guide, query), load_scene(scene)
     kept = EVERY[planner] if every is None else every
     if planner == "sampling":
         changed = {
@@ -211,7 +226,7 @@ def _require_none_of(changed: dict[str, bool]) -> None:
     wrong = [f"--{name}" for name, is_changed in changed.items() if is_changed]
     if wrong:
         raise InputError(
-            f"the sampling planner has no contact problem: {', '.join(wrong)} is for mip and sl1m"
+            f"the sampling planner chooses its own contacts: {', '.join(wrong)} is for mip and sl1m"
         )
 
 
@@ -266,6 +281,8 @@ def _plan_and_write(
             raise InputError("a cost is for the mip planner; sl1m's cost is the L1 norm itself")
         found = plan_sl1m(problem, time_limit=time_limit, max_combinations=max_combinations)
     else:
+        if max_combinations != 2000:
+            raise InputError("--max-combinations is for the sl1m planner; mip has no such limit")
         found = plan_mip(problem, time_limit=time_limit, cost=cost)
     write_plan(out, found)
     if picture is not None:
@@ -293,4 +310,14 @@ def _draw(
 ) -> None:
     from jaxleas.contacts.pictures import draw_plan
 
-    draw_plan(picture, problem, found, guide)
+    draw_plan(picture, problem, found, guide, _as_far_as_it_goes(problem, found))
+
+
+def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:
+    """Plan the phases before the first that cannot be made, for a picture."""
+    count = 0 if found.last_feasible_phase is None else found.last_feasible_phase + 1
+    if found.feasible or found.planner not in PLANNERS or not 0 < count < len(problem):
+        return None
+    prefix = problem.prefix(count)
+    made = PLANNERS[found.planner](prefix, diagnose=False, time_limit=FOR_PICTURE)
+    return made if made.feasible else None

@@ -16,8 +16,9 @@ WORDS = {
     "com_reach": "reach of the centre of mass",
     "com_over": "room for the centre of mass over the foot",
     "edges": "surface beyond the edges",
+    "together": "reach of the step and of the centre of mass together",
 }
-LADDER = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
+LADDER = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
 """Amounts by which a family is relaxed [m]; one that needs more is not to blame."""
 
 
@@ -28,10 +29,12 @@ class Blame:
     Attributes:
         short: for each family of constraints to blame, how much more of it suffices [m].
         surface: of the scene that would do if it were a candidate, whole; empty if none.
+        in_time: whether every question was answered before the deadline.
     """
 
     short: dict[str, float]
     surface: str = ""
+    in_time: bool = True
 
 
 def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> str:
@@ -57,9 +60,12 @@ def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> st
     elif blame.surface:
         helps.append(f"onto '{blame.surface}', which is none of its candidates")
     sentence = f"phase {phase} ({failing.foot} onto {where}) is the first step that cannot be made"
-    if not helps:
-        return f"{sentence}; relaxing any single family of constraints by 1 m does not help"
-    return f"{sentence}; it could be made {', or '.join(helps)}"
+    end = "" if blame.in_time else "; the time ran out before all that would help was found"
+    if helps:
+        return f"{sentence}; it could be made {', or '.join(helps)}{end}"
+    if end:
+        return f"{sentence}{end}"
+    return f"{sentence}; relaxing one family of constraints by {LADDER[-1]:g} m does not help"
 
 
 def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
@@ -72,14 +78,23 @@ def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
     families: tuple[Family, ...] = ("step",)
     if prefix.model == "two_com":
         families = ("step", "com_reach", "com_over")
+    late = False
+
+    def outcome(problem: ContactProblem, relaxed: dict[Family, float] | None = None) -> Outcome:
+        nonlocal late
+        found = decide(problem, deadline, relaxed=relaxed).outcome
+        late = late or found == "time_limit"
+        return found
+
     short = {}
     for family in families:
-        short[family] = _least(lambda m, f=family: decide(prefix, deadline, relaxed={f: m}).outcome)
-    short["edges"] = _least(lambda metres: decide(with_wider(prefix, metres), deadline).outcome)
-    return Blame(
-        {family: metres for family, metres in short.items() if metres is not None},
-        _other_surface(prefix, deadline),
-    )
+        short[family] = _least(lambda metres, f=family: outcome(prefix, {f: metres}))
+    short["edges"] = _least(lambda metres: outcome(with_wider(prefix, metres)))
+    if len(families) > 1 and all(short[family] is None for family in families):
+        short["together"] = _least(lambda metres: outcome(prefix, dict.fromkeys(families, metres)))
+    surface = _other_surface(prefix, deadline)
+    found = {family: metres for family, metres in short.items() if metres is not None}
+    return Blame(found, surface, not late)
 
 
 def _least(outcome: Callable[[float], Outcome]) -> float | None:
@@ -87,12 +102,15 @@ def _least(outcome: Callable[[float], Outcome]) -> float | None:
     failed, enough = -1, len(LADDER)
     while enough - failed > 1:
         middle = (failed + enough) // 2 if enough < len(LADDER) else len(LADDER) - 1
-        if outcome(LADDER[middle]) == "optimal":
+        answer = outcome(LADDER[middle])
+        if answer == "optimal":
             enough = middle
         elif middle == len(LADDER) - 1:
             return None
-        else:
+        elif answer == "infeasible":
             failed = middle
+        else:  # no answer: what is known to be enough
+            break
     return LADDER[enough]
 
 

@@ -31,19 +31,24 @@ def require_picture(path: str | Path) -> None:
 
 
 def draw_plan(
-    path: str | Path, problem: ContactProblem, plan: ContactPlan, guide: GuidePath | None = None
+    path: str | Path,
+    problem: ContactProblem,
+    plan: ContactPlan,
+    guide: GuidePath | None = None,
+    made: ContactPlan | None = None,
 ) -> None:
     """Draw a plan, or where planning fails, in two views.
 
     Surfaces are grey, the guide blue, left feet red and right feet yellow, the centre of mass
     black. Without a plan, the candidates of the first step that cannot be made are outlined, and
-    the reason is the title.
+    the reason is the title, and the feet are those of the phases before, where these are given.
 
     Args:
         path: of the picture (.png, .svg, .pdf).
         problem: the contact problem.
         plan: its answer.
         guide: drawn whole; without it, the roots of the phases are.
+        made: of a plan that failed, one for the phases before the first that cannot be made.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
@@ -60,7 +65,7 @@ def draw_plan(
     for ax, (view, shown) in zip(axes, VIEWS.items(), strict=True):
         _draw_surfaces(ax, problem, plan, shown)
         _draw_guide(ax, roots, shown)
-        _draw_feet(ax, problem, plan, shown)
+        _draw_feet(ax, problem, plan if made is None else made, shown)
         _draw_stop(ax, plan, roots, shown)
         _frame(ax, problem, plan, roots, shown)
         ax.set_ylabel(f"{'xyz'[shown[1]]} [m], {view}")

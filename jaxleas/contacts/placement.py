@@ -34,12 +34,15 @@ class Placement:
         steps: as given, with the cuts that were found on the way.
         footholds: of each phase [m].
         com: of each phase [m]; None for the model "feet".
+        blamed: where infeasible, phases whose surfaces together are impossible, whatever the
+            surfaces of the others.
     """
 
     outcome: Outcome
     steps: list[Step]
     footholds: Float[np.ndarray, "n 3"] | None = None
     com: Float[np.ndarray, "n 2 3"] | None = None
+    blamed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +75,9 @@ def place(
         targets: minimise the distance to these, else maximise the least slack.
     """
     for _ in range(MAX_ROUNDS):
-        outcome, footholds = _place_feet(problem, steps, surfaces, deadline, targets)
+        outcome, footholds, blamed = _place_feet(problem, steps, surfaces, deadline, targets)
         if footholds is None:
-            return Placement(outcome, steps)
+            return Placement(outcome, steps, blamed=blamed)
         com, steps, found = put_com(problem, steps, footholds)
         if not found:
             return Placement("optimal", steps, footholds, com)
@@ -116,14 +119,19 @@ def _place_feet(
     surfaces: tuple[str, ...],
     deadline: float,
     targets: Targets | None,
-) -> tuple[Outcome, Float[np.ndarray, "n 3"] | None]:
-    """Solve for two coordinates in the plane of each surface, and the least slack."""
+) -> tuple[Outcome, Float[np.ndarray, "n 3"] | None, tuple[int, ...]]:
+    """Solve for two coordinates in the plane of each surface, and the least slack.
+
+    Returns:
+        The outcome, footholds where there are some, and the phases to blame where there are none.
+    """
     count = len(steps)
     planes = [problem.surfaces[name] for name in surfaces]
     origin = np.array([plane.vertices.mean(axis=0) for plane in planes])
     columns = np.arange(2 * count).reshape(count, 2)
     slack = np.array([2 * count])
     rows = Rows(2 * count + 1)
+    owners = []  # the phases that a row is about: where it lands, where the other foot stands
     for index, (plane, step) in enumerate(zip(planes, steps, strict=True)):
         inside = plane.edge_offsets - plane.edge_normals @ origin[index]
         ones = np.ones((len(inside), 1))
@@ -137,13 +145,14 @@ def _place_feet(
             blocks.append((columns[step.standing], -step.A @ planes[step.standing].basis.T))
             bound = bound + step.A @ origin[step.standing]
         rows.add(blocks, bound)
+        owners += [(index, index)] * len(inside) + [(index, step.standing)] * len(step.b)
     program = _most_slack(rows, count)
     solution = solve(program, deadline - time.perf_counter())
     if solution.outcome != "optimal":
-        return solution.outcome, None
+        return solution.outcome, None, ()
     margin = float(solution.x[-1])
     if margin < LEAST_MARGIN:
-        return "infeasible", None
+        return "infeasible", None, _to_blame(solution.duals, owners)
     bases = np.stack([plane.basis for plane in planes])
     if targets is not None:
         kept = _with_margin(program, min(margin, KEPT_MARGIN))
@@ -154,9 +163,17 @@ def _place_feet(
         else:
             solution = _nearest_quadratic(kept, origin, bases, targets)
         if solution.outcome != "optimal":
-            return solution.outcome, None
+            return solution.outcome, None, ()
     local = solution.x[: 2 * count].reshape(count, 1, 2)
-    return "optimal", origin + (local @ bases)[:, 0, :]
+    return "optimal", origin + (local @ bases)[:, 0, :], ()
+
+
+def _to_blame(duals: Float[np.ndarray, " r"], owners: list[tuple[int, int]]) -> tuple[int, ...]:
+    """Return the phases of the rows with a dual: these rows alone leave no more slack."""
+    size = np.abs(duals)
+    rows = np.flatnonzero(size > 1e-9 * size.max(initial=0.0))
+    blamed = {phase for row in rows for phase in owners[row]} - {INITIAL}
+    return tuple(sorted(blamed or {phase for phase, _ in owners}))
 
 
 def _most_slack(rows: Rows, count: int) -> Program:
@@ -165,7 +182,7 @@ def _most_slack(rows: Rows, count: int) -> Program:
     row_low, row_high = rows.bounds()
     return Program(
         cost=cost,
-        low=np.append(np.full(2 * count, -np.inf), -1.0),
+        low=np.full(2 * count + 1, -np.inf),
         high=np.append(np.full(2 * count, np.inf), MOST_MARGIN),
         A=rows.matrix(),
         row_low=row_low,

@@ -12,6 +12,7 @@ from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
+from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.planner import _Walk
 from jaxleas.contacts.sampling.world import World, talos_world
 from jaxleas.contacts.surfaces import make_surface
@@ -55,6 +56,8 @@ def plan_sampling(
     walked = walk.plans()[0]
     seconds = time.perf_counter() - begin
     plan = contact_plan(walked, settings.contact_lift).but(seconds=seconds)
+    if "neither foot" in walked.reason:
+        plan = plan.but(reason=f"{plan.reason}: {walk.why()}")
     if LATE in walked.reason:
         reason = f"not decided within the time limit of {time_limit:g} s"
         plan = plan.but(status="time_limit", reason=f"{reason}: {plan.reason.partition(': ')[0]}")
@@ -145,6 +148,10 @@ class _TimedWalk(_Walk):
     def __init__(self, world: World, guide: GuidePath, deadline: float) -> None:
         super().__init__(world, [guide], [0])
         self.deadline = deadline
+
+    def why(self) -> str:
+        """Return why each foot makes no contact at the configuration after the last one."""
+        return explain_feet(self.world, self.guides, self.stances, int(self.at[0]) + 1)
 
     def _go_on(self) -> tuple[np.ndarray, np.ndarray]:
         if time.perf_counter() > self.deadline:

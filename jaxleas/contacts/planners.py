@@ -186,10 +186,12 @@ def _diagnosed(
 def _sl1m_reason(found: Attempt) -> str:
     if found.outcome == "infeasible":
         return "not even the relaxation has a solution"
-    how = "all" if found.exhausted else "the first"
+    failed = f"the first {found.combinations} combinations of surfaces failed"
+    if found.exhausted:
+        failed = f"every combination of surfaces fails ({found.combinations} were tried)"
     return (
-        f"the relaxation left {found.undecided} phases undecided, and {how} {found.combinations}"
-        " combinations of surfaces failed (this proves nothing: ask the mip planner)"
+        f"the relaxation left {found.undecided} phases undecided, and {failed}; this proves"
+        " nothing: ask the mip planner"
     )
 
 

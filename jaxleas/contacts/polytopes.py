@@ -7,7 +7,7 @@ from importlib import resources
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.files import read_json
+from jaxleas.files import read_json, refuse_misspelt_keys
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.types.errors import InputError
 
@@ -50,6 +50,7 @@ def read_polytopes(where: str, content: object, model: str) -> StepPolytopes:
     missing = [name for name in needed if name not in content]
     if missing:
         raise InputError(f"{where} lacks {', '.join(missing)}, which model '{model}' needs")
+    refuse_misspelt_keys(where, content, NAMES)
     made = {name: _polytope(f"{where}: {name}", content[name]) for name in NAMES if name in content}
     return StepPolytopes(
         foot={name[-2:]: each for name, each in made.items() if not name.startswith("COM")},
@@ -61,8 +62,11 @@ def _polytope(where: str, content: object) -> Polytope:
     if not isinstance(content, dict) or not {"A", "b"} <= content.keys():
         raise InputError(f"{where} must be {{A: [[x, y, z], ...], b: [...]}} with A x <= b")
     try:
-        A, b = np.array(content["A"], np.float64), np.array(content["b"], np.float64)
-    except (TypeError, ValueError) as error:
+        A, b = np.array(content["A"]), np.array(content["b"])
+        if not (A.dtype.kind in "iuf" and b.dtype.kind in "iuf"):
+            raise ValueError("not numbers")
+        A, b = A.astype(np.float64), b.astype(np.float64)
+    except (OverflowError, TypeError, ValueError) as error:
         raise InputError(f"{where}: A and b must be lists of numbers") from error
     if A.ndim != 2 or A.shape[1:] != (3,) or b.shape != A.shape[:1]:
         raise InputError(

@@ -9,12 +9,14 @@ import numpy as np
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.files import read_json, require_version, write_json
+from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
 from jaxleas.types.errors import InputError
 
 VERSION = 1
 NEEDED = ("robot", "model", "surfaces", "initial", "phases")
+KNOWN = (*NEEDED, "version", "polytopes", "foot_half_size", "parts")
+OF_A_PHASE = ("foot", "yaw", "candidates", "root")
 MAX_COORDINATE = 1e6  # [m]
 MAX_PHASES = 10_000
 ON_SURFACE = 1e-3  # a foot further [m] from every surface stands on none
@@ -44,13 +46,16 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
     missing = [key for key in NEEDED if key not in content]
     if missing:
         raise InputError(f"{where} is not a contact problem: it lacks {', '.join(missing)}")
+    refuse_misspelt_keys(where, content, KNOWN)
     require_version(content, VERSION, where)
+    if not isinstance(content["robot"], str):
+        raise InputError(f"{where}: robot must be a name, 'talos', not {content['robot']!r:.60}")
     model = content["model"]
     if model not in ("two_com", "feet"):
         raise InputError(f"{where}: model must be 'two_com' or 'feet', not {model!r:.60}")
     surfaces = _surfaces(where, content["surfaces"])
     problem = ContactProblem(
-        robot=str(content["robot"]),
+        robot=content["robot"],
         model=model,
         surfaces=surfaces,
         initial=_initial(where, content["initial"]),
@@ -155,10 +160,13 @@ def _phases(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> tu
 def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Phase:
     if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
         raise InputError(f"{where} must be an object with foot, yaw and candidates")
+    refuse_misspelt_keys(where, content, OF_A_PHASE)
     if content["foot"] not in FEET:
         raise InputError(f"{where}: foot must be 'LF' or 'RF', not {content['foot']!r:.60}")
     names = content["candidates"]
-    if not isinstance(names, list) or not names:
+    if not isinstance(names, list):
+        raise InputError(f"{where}: candidates must be a list of names, not {names!r:.60}")
+    if not names:
         raise InputError(f"{where} has no candidate surfaces: the foot could land nowhere")
     for name in names:
         if not isinstance(name, str) or name not in surfaces:
@@ -175,14 +183,14 @@ def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Pha
 def _polytopes(where: str, content: dict[str, Any], model: str) -> StepPolytopes:
     given = content.get("polytopes")
     if given is None:
-        return load_step_polytopes(str(content["robot"]))
+        return load_step_polytopes(content["robot"])
     return read_polytopes(f"{where}: polytopes", given, model)
 
 
 def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
     given = content.get("foot_half_size")
     if given is None:
-        return load_robot(str(content["robot"])).foot_half_size
+        return load_robot(content["robot"]).foot_half_size
     if not isinstance(given, list) or len(given) != 2 or not all(_is_number(x) for x in given):
         raise InputError(f"{where}: foot_half_size must be two numbers [m], not {given!r:.60}")
     if not all(0.0 < x < 1.0 for x in given):
@@ -230,5 +238,6 @@ def _yaw(where: str, content: Any) -> float:
 
 
 def _is_number(content: Any) -> bool:
+    """Tell finite numbers from others, and from integers too large to be any."""
     is_number = isinstance(content, int | float) and not isinstance(content, bool)
-    return is_number and math.isfinite(content)
+    return is_number and abs(content) < 1e300

@@ -1,13 +1,11 @@
-"""SL1M (T 5.3): relax, keep what the L1 norm decided, enumerate the rest by cost."""
+"""SL1M (T 5.3): relax, keep what the L1 norm decided, enumerate by cost what is to blame."""
 
-import heapq
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
 from jaxleas.contacts.com import with_first_cuts
+from jaxleas.contacts.combinations import Combinations
 from jaxleas.contacts.linear_program import Outcome
 from jaxleas.contacts.mixed_integer import Candidates
 from jaxleas.contacts.placement import Placement, place
@@ -33,7 +31,7 @@ class Attempt:
         placement: footholds and com.
         undecided: phases that the relaxation left without a surface.
         combinations: tried.
-        exhausted: whether every combination was tried.
+        exhausted: whether every combination was tried, or ruled out by one that was.
         relaxed: the relaxation's answer.
     """
 
@@ -80,7 +78,7 @@ def search(
     max_combinations: int,
     weights: SlackWeights = "uniform",
 ) -> Attempt:
-    """Relax, keep what is decided, enumerate the rest.
+    """Relax, take the nearest surfaces, then others by cost where a failure says so.
 
     Args:
         problem: the contact problem.
@@ -96,10 +94,10 @@ def search(
     steps = relaxed.steps
     undecided = sum(float(slack.min()) > DECIDED for slack in relaxed.slack)
     most = max_combinations if undecided else max(1, max_combinations)
-    tried, outcome, exhausted = 0, "not_found", True
-    for surfaces in _by_cost(candidates, relaxed.slack):
+    tried, outcome = 0, "not_found"
+    combinations = Combinations(candidates, relaxed.slack)
+    for surfaces in combinations:
         if tried == most:
-            exhausted = False
             break
         tried += 1
         placement = place(problem, steps, surfaces, deadline)
@@ -107,34 +105,9 @@ def search(
         if placement.outcome == "optimal":
             return Attempt("optimal", steps, surfaces, placement, undecided, tried, False, relaxed)
         if placement.outcome == "time_limit":
-            outcome, exhausted = "time_limit", False
+            outcome = "time_limit"
             break
+        if placement.outcome == "infeasible":
+            combinations.refute(placement.blamed)
+    exhausted = combinations.exhausted
     return Attempt(outcome, steps, (), None, undecided, tried, exhausted, relaxed)
-
-
-def _by_cost(
-    candidates: Candidates, slack: tuple[Float[np.ndarray, " c"], ...]
-) -> Iterator[tuple[str, ...]]:
-    """Yield combinations, cheapest sum of slacks first; decided phases stay as they are."""
-    options = []
-    for names, distances in zip(candidates, slack, strict=True):
-        order = np.argsort(distances, kind="stable")
-        decided = distances[order[0]] <= DECIDED
-        options.append([(float(distances[i]), names[i]) for i in order[: 1 if decided else None]])
-    free = [index for index, each in enumerate(options) if len(each) > 1]
-    start: tuple[int, ...] = tuple(0 for _ in free)
-    heap: list[tuple[float, tuple[int, ...]]] = [
-        (sum(options[index][0][0] for index in free), start)
-    ]
-    seen = {start}
-    while heap:
-        cost, ranks = heapq.heappop(heap)
-        chosen = dict(zip(free, ranks, strict=True))
-        yield tuple(each[chosen.get(index, 0)][1] for index, each in enumerate(options))
-        for position, index in enumerate(free):
-            rank = ranks[position] + 1
-            following = (*ranks[:position], rank, *ranks[position + 1 :])
-            if rank < len(options[index]) and following not in seen:
-                seen.add(following)
-                more = options[index][rank][0] - options[index][rank - 1][0]
-                heapq.heappush(heap, (cost + more, following))

@@ -96,7 +96,8 @@ def require_polygon(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
         raise InputError(f"{where} has a coordinate that is not a finite number")
     if np.linalg.norm(polygon_area_vector(vertices)) < MIN_AREA:
         raise InputError(f"{where} is degenerate: its area is below {MIN_AREA:g} m^2")
-    if np.linalg.norm(vertices - np.roll(vertices, 1, axis=0), axis=1).min() < 1e-6:
+    apart = np.linalg.norm(vertices[:, None] - vertices, axis=-1)
+    if (apart[np.triu_indices(len(vertices), 1)] < 1e-6).any():
         raise InputError(f"{where} repeats a vertex; list each corner once")
     require_planar_and_convex(vertices, where)
 

@@ -9,6 +9,7 @@ from jaxleas.files.atomic import (
     write_text,
 )
 from jaxleas.files.json_text import parse_json
+from jaxleas.files.keys import refuse_misspelt_keys
 from jaxleas.files.lock import FolderLock
 from jaxleas.files.reading import (
     read_bytes,
@@ -25,6 +26,7 @@ __all__ = [
     "read_bytes",
     "read_json",
     "read_npz",
+    "refuse_misspelt_keys",
     "require_version",
     "require_version_array",
     "sweep_temporaries",

@@ -36,7 +36,7 @@ def label(
 
     Args:
         guides: guide path files, .npz.
-        scene: that they walk on, .json.
+        scene: that they walk on, .json; or an .stl or .obj mesh in metres, z up.
         out: folder of the verdict files; the same command goes on where it was interrupted.
         planner: that judges: sampling, mip, sl1m, or MODULE:CLASS of your own.
         parameters: of a planner of your own, as longest_step=0.3.

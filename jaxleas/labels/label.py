@@ -8,7 +8,7 @@ from jaxleas.labels.planners import judge
 from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.shards import Shard, provenance_of, write_shard
 from jaxleas.labels.workers import Workers
-from jaxleas.terrain.scene import read_scene
+from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError
 
 GUIDES_A_SHARD = {"sampling": 64, "mip": 16, "sl1m": 16}
@@ -38,7 +38,7 @@ def plan_shards(
     """
     chosen = require_settings(planner, settings)
     a_shard = a_shard or GUIDES_A_SHARD.get(planner, 16)
-    read_scene(scene)
+    load_scene(scene)
     stems = [path.stem for path in guides]
     twice = sorted({stem for stem in stems if stems.count(stem) > 1})
     if twice:
@@ -61,7 +61,7 @@ def judge_shard(shard: Shard) -> int:
     file is there already was written by a worker that died before it could say so.
     """
     if not shard.is_done:
-        scene = read_scene(shard.scene)
+        scene = load_scene(shard.scene)
         paths = read_guide_paths(shard.guides).paths[shard.first : shard.last]
         write_shard(shard, judge(shard.planner, scene, paths, shard.settings, shard.first))
     return len(shard)

@@ -15,8 +15,8 @@ from jaxleas.files import read_json, require_version
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain.atlas import Atlas, make_atlas
+from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.terrain.rasterise import rasterise
-from jaxleas.terrain.scene import read_scene
 from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64
@@ -83,7 +83,7 @@ def read_labels(
         scene = finder.find(provenance["scene"])
         if provenance["scene"]["sha256"] not in scenes:
             scenes[provenance["scene"]["sha256"]] = len(maps)
-            maps.append(rasterise(read_scene(scene), resolution))
+            maps.append(rasterise(load_scene(scene), resolution))
         paths = read_guide_paths(finder.find(provenance["guides"])).paths
         _require_paths(content, paths, path)
         verdicts = [each for each in content["verdicts"] if each.get("decided", True)]

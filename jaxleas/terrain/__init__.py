@@ -6,7 +6,7 @@ from jaxleas.terrain.generator import Arena, generate_arena
 from jaxleas.terrain.height_map import HeightMap, read_height_map, write_height_map
 from jaxleas.terrain.importers import import_mesh, import_png, import_terrain
 from jaxleas.terrain.links import Link, Tile
-from jaxleas.terrain.mesh_scene import mesh_to_scene
+from jaxleas.terrain.mesh_scene import load_scene, mesh_to_scene
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.terrain.scenarios import (
     SCENARIOS,
@@ -42,6 +42,7 @@ __all__ = [
     "import_mesh",
     "import_png",
     "import_terrain",
+    "load_scene",
     "long_course",
     "make_scenario",
     "mesh_to_scene",

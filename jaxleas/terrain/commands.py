@@ -10,7 +10,8 @@ from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap, write_height_map
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.meshes import Up
+from jaxleas.terrain.mesh_scene import mesh_to_scene
+from jaxleas.terrain.meshes import SUFFIXES, Up
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types.errors import InputError
@@ -65,11 +66,11 @@ def convert(
     z_max: float | None = None,
     zero_is_void: bool = False,
 ) -> Path:
-    """Import a mesh, an image or a scene as a height map (.npz).
+    """Import a mesh, an image or a scene as a height map (.npz), or a mesh as a scene (.json).
 
     Args:
         file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        out: the height map, .npz.
+        out: the height map, .npz; of a mesh also the scene of its polygons, .json.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
         up: of a mesh, the axis that points up.
         scale: of a mesh, metres a unit.
@@ -77,6 +78,12 @@ def convert(
         z_max: of a .png, the height of white [m].
         zero_is_void: of a .png, whether black means no ground.
     """
+    if file.suffix.lower() in SUFFIXES and out.suffix == ".json":
+        scene = mesh_to_scene(file, up, scale)
+        write_scene(out, scene)
+        surfaces, obstacles = len(scene.surfaces), len(scene.obstacles)
+        print(f"{file}: {surfaces} surfaces, {obstacles} obstacles\nwritten to {out}")
+        return out
     _require_suffix(out, ".npz")
     height_map = import_terrain(
         file,

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.meshes import Up, read_triangles
+from jaxleas.terrain.meshes import SUFFIXES, Up, read_triangles
 from jaxleas.terrain.polygons import (
     CONVEXITY_TOLERANCE,
     MIN_AREA,
@@ -15,7 +15,7 @@ from jaxleas.terrain.polygons import (
     planarity_deviation,
     polygon_area_vector,
 )
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.types.errors import InputError
 
 WELD = 1e-5
@@ -52,6 +52,26 @@ def mesh_to_scene(path: str | Path, up: Up = "z", scale: float = 1.0) -> Scene:
     if not surfaces:
         raise InputError(f"{path} has no face that looks up: are its triangles wound inside out?")
     return Scene(surfaces, obstacles)
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Return a terrain as polygons: a scene, or a mesh in metres with z up.
+
+    Args:
+        path: .json scene, .stl or .obj mesh.
+
+    Raises:
+        InputError: the file has no polygons, or cannot be used.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix in SUFFIXES:
+        return mesh_to_scene(path)
+    if suffix in (".npz", ".png"):
+        raise InputError(
+            f"{path} is a map of heights; contacts need polygons: a scene (.json) or a mesh"
+            f" ({', '.join(SUFFIXES)})"
+        )
+    return read_scene(path)
 
 
 def _merge(

@@ -1,6 +1,5 @@
 """Scenes: convex contact surfaces, obstacles and named areas; what height maps are made from."""
 
-import difflib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.files import read_json, require_version, write_json
+from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.terrain.polygons import require_convex_polygon
 from jaxleas.types.errors import InputError
 
@@ -50,7 +49,7 @@ def read_scene(path: str | Path) -> Scene:
     content = read_json(path)
     if not isinstance(content, dict) or "surfaces" not in content:
         raise InputError(f"{path} is not a scene: it needs an object with the key 'surfaces'")
-    _refuse_misspelt_keys(path, content)
+    refuse_misspelt_keys(path, content, KNOWN_KEYS)
     require_version(content, VERSION, path)
     scene = Scene(
         surfaces=_polygons(path, content, "surfaces", dimensions=(3,)),
@@ -116,11 +115,3 @@ def _polygon(
     if not all(abs(number) < 1e6 for number in numbers):
         raise InputError(f"{path}: {key} '{name}' has a coordinate beyond 1000 km")
     return np.array(value, dtype=np.float64).reshape(len(value), -1 if value else 3)
-
-
-def _refuse_misspelt_keys(path: str | Path, content: dict[str, Any]) -> None:
-    for key in content:
-        if key not in KNOWN_KEYS:
-            nearest = difflib.get_close_matches(key, KNOWN_KEYS, n=1, cutoff=0.75)
-            if nearest:
-                raise InputError(f"{path}: unknown key '{key}'; did you mean '{nearest[0]}'?")

@@ -217,7 +217,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("plan missing.json --planner sampling --out p.json", "jaxleas contacts GUIDE.npz"),
+        ("plan missing.json --planner sampling --out p.json", "missing.json does not exist"),
         ("contacts guide.npz --scene scene.json --cost linear", "--cost is for mip and sl1m"),
         ("contacts guide.npz --scene scene.json --problem a.json", "--problem is for mip"),
         ("contacts guide.npz --scene scene.json --robot spot", "knows the legs of talos only"),
@@ -237,7 +237,7 @@ def test_a_mistake_is_one_sentence(folder, line: str, words: str) -> None:
 def test_check_asks_for_what_the_plan_needs(folder, climb) -> None:
     write_plan("plan.json", climb)
     with pytest.raises(InputError, match=r"--guide GUIDE\.npz --scene"):
-        cli.run(["check", "plan.json", "--problem", "scene.json"])
+        run("check plan.json --problem scene.json --guide guide.npz")
     write_plan("plan.json", climb.but(planner="mip"))
     with pytest.raises(InputError, match="say which --problem"):
         cli.run(["check", "plan.json"])

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import linprog
 
 from jaxleas.contacts.certificate import certify
-from jaxleas.contacts.explanation import find_blame
+from jaxleas.contacts.explanation import explain, find_blame
 from jaxleas.contacts.planners import PLANNERS, plan_mip, plan_sl1m
 from jaxleas.contacts.prefix import last_feasible_phase
 from jaxleas.types.errors import InputError
@@ -103,6 +103,22 @@ def test_the_verdict_is_that_of_brute_force(model: str) -> None:
         assert plan_sl1m(problem(described), diagnose=False).feasible <= expected
         verdicts.append(expected)
     assert 3 <= sum(verdicts) <= 11, "worlds must be of both kinds"
+
+
+def test_the_last_phase_is_that_of_brute_force() -> None:
+    """The longest prefix with a plan, by enumeration; SL1M never goes beyond it."""
+    found = set()
+    for seed in range(14):
+        described = random_world(seed, "feet")
+        plan = plan_mip(problem(described))
+        prefixes = [{**described, "phases": described["phases"][:n]} for n in range(1, 5)]
+        expected = max((n for n, each in enumerate(prefixes) if twin(each)), default=-1)
+        assert plan.last_feasible_phase == expected, seed
+        last = plan_sl1m(problem(described)).last_feasible_phase
+        assert last is not None
+        assert last <= expected
+        found.add(expected)
+    assert len(found) >= 2, "worlds must fail in different phases"
 
 
 def test_the_centre_of_mass_decides_some() -> None:
@@ -225,6 +241,26 @@ def test_the_family_to_blame(polytope: str, bound: list[float], family: str) -> 
     other = {"step": "com_reach", "com_reach": "step"}[family]
     assert other not in blame.short
     assert blame.short["edges"] <= 0.1
+
+
+def test_a_long_way_needs_the_reaches_together() -> None:
+    """A step of 1.5 m: neither reach alone would do."""
+    surfaces = {"a": rectangle(-0.5, 0.0, -0.5, 0.5), "b": rectangle(1.5, 2, -0.5, 0.5)}
+    blame = find_blame(problem(content(surfaces, [["b"]])))
+    assert "step" not in blame.short
+    assert blame.short["together"] == 2.0
+    assert blame.short["edges"] == 2.0
+    assert blame.in_time
+
+
+def test_an_explanation_that_runs_late_says_so() -> None:
+    """What was not found in time is not said to be of no help."""
+    asked = problem(stones(0.45))
+    last = plan_mip(asked).last_feasible_phase
+    assert last is not None
+    late = explain(asked, last + 1, deadline=time.perf_counter())
+    assert "the time ran out" in late
+    assert "does not help" not in late
 
 
 @pytest.mark.parametrize("cost", ["linear", "quadratic"])

@@ -23,6 +23,7 @@ def change(described: dict, path: list, value) -> dict:
 
 
 BENT = [[0, 0, 0], [1, 0, 0], [1, 1, 0.2], [0, 1, 0]]
+TWICE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]] * 2
 DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
 
 
@@ -53,6 +54,17 @@ DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
         (["polytopes", "RF_in_LF", "A", 0], [0, 0, 0], ["RF_in_LF: A has a row of zeros"]),
         (["foot_half_size"], [10, 6], ["foot_half_size", "not between 0 and 1 m"]),
         (["version"], 2, ["is of version 2"]),
+        (["version"], True, ["is of version True"]),
+        (["robot"], 3, ["robot must be a name", "not 3"]),
+        (["polytop"], {}, ["unknown key 'polytop'", "did you mean 'polytopes'"]),
+        (["phases", 1, "candidate"], ["start"], ["phase 1", "did you mean 'candidates'"]),
+        (["phases", 1, "candidates"], "start", ["phase 1: candidates must be a list of names"]),
+        (["phases", 2, "yaw"], 10**400, ["phase 2", "one finite number of radians"]),
+        (["foot_half_size"], [10**400, 0.1], ["foot_half_size must be two numbers"]),
+        (["polytopes", "RF_in_LF", "b"], [10**400] * 6, ["A and b must be lists of numbers"]),
+        (["polytopes", "RF_in_LF", "b"], ["1"] * 6, ["A and b must be lists of numbers"]),
+        (["polytopes", "RF_in_LH"], {}, ["unknown key 'RF_in_LH'", "did you mean"]),
+        (["surfaces", "stone_1"], TWICE, ["'stone_1' repeats a vertex"]),
         (["phases"], KeyError, ["lacks phases"]),
         (["parts"], ["stone_1"], ["parts must be an object"]),
         (["parts"], {"stone_1": "moon"}, ["'stone_1' is part of 'moon'", "no surface"]),

@@ -86,7 +86,7 @@ def test_the_cap_on_combinations_is_kept_and_said() -> None:
     for cap in (1, 2):
         plan = plan_sl1m(asked, pruning=False, max_combinations=cap, diagnose=False)
         assert (plan.status, plan.combinations) == ("not_found", cap)
-        assert f"the first {cap} combinations" in plan.reason
+        assert f"the first {cap} combinations of surfaces failed" in plan.reason
         assert "proves nothing" in plan.reason
 
 

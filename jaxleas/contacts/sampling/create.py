@@ -69,6 +69,7 @@ def create_contacts(
     order: Int[np.ndarray, " N"],
     *,
     least_move: float = 0.0,
+    tally: dict[str, int] | None = None,
 ) -> Created:
     """Give the moving foot of each robot the best new contact that passes every test.
 
@@ -81,6 +82,7 @@ def create_contacts(
         stances: before the move; the other foot's contact is kept.
         order: becomes `since` of the new contacts.
         least_move: distance by which the contact must move [m].
+        tally: gets the number of places that each test leaves, in the order of the tests.
     """
     count = len(aim)
     each = np.arange(count)
@@ -96,6 +98,8 @@ def create_contacts(
     can_leave = _two_points(world, aim, stances, each, stances.sole[each, aim.limb],
                             stances.rotation[each, aim.limb])  # fmt: skip
     candidates = near_candidates(world, aim)
+    count_left(tally, "leave", int(can_leave.sum()))
+    count_left(tally, "near", len(candidates.row))
     candidates = candidates[can_leave[candidates.row]]
     start = 0
     for stage in world.settings.stages:
@@ -103,11 +107,18 @@ def create_contacts(
         chosen &= ~result.found[candidates.row]
         start += stage
         if chosen.any():
-            tried = _try(world, aim, stances, kept, candidates[chosen], least_move)
+            tried = _try(world, aim, stances, kept, candidates[chosen], least_move, tally)
             _take_first_robust(world, aim, kept, tried, order, result)
+            count_left(tally, "robust enough", int(result.found.sum()))
         if result.found.all():
             break
     return result
+
+
+def count_left(tally: dict[str, int] | None, test: str, left: int) -> None:
+    """Add to the places that a test left."""
+    if tally is not None:
+        tally[test] = tally.get(test, 0) + left
 
 
 def _try(
@@ -117,6 +128,7 @@ def _try(
     kept: PlacedLegs,
     some: Candidates,
     least_move: float,
+    tally: dict[str, int] | None,
 ) -> _Tried:
     """Return the candidates that pass all tests but robustness."""
     database, ground = world.database, world.ground
@@ -130,9 +142,13 @@ def _try(
     before = stances.sole[some.row, limb]
     good = placed.reachable & (np.linalg.norm(sole - before, axis=1) >= least_move)
     rows = np.flatnonzero(good)
+    count_left(tally, "within the joint limits", len(rows))
     rows = rows[~legs_collide(world.legs, placed, rows, ground, feet=True)]
+    count_left(tally, "clear of the scene", len(rows))
     rows = _clear_of_other_leg(world, placed, kept, some.row, rows)
+    count_left(tally, "clear of the other leg", len(rows))
     rows = rows[_two_points(world, aim, stances, some.row[rows], sole[rows], rotation[rows])]
+    count_left(tally, "within reach of the centre of mass over the other foot", len(rows))
     passed = placed[rows]
     return _Tried(
         row=some.row[rows],

@@ -1,0 +1,69 @@
+"""From a contact problem with roots to a guide path and a scene, for planners that need both."""
+
+import math
+
+import numpy as np
+
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.terrain.polygons import is_vertical
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import GuidePath, InputError
+
+STEP, TURN, TIME = 0.02, 0.05, 0.2
+"""Between two configurations at most [m] and [rad]; [s] apart, as guide paths of LEAS are."""
+HEIGHTS = (0.85, 0.98)
+"""Of the root above the feet at the start: that of the first root, held within these [m]."""
+
+
+def guide_from_problem(problem: ContactProblem) -> GuidePath:
+    """Return a guide path through the roots of all phases, straight from each to the next.
+
+    It starts above the middle between the feet's first places, heading as they do.
+
+    Args:
+        problem: each of its phases has a root.
+
+    Raises:
+        InputError: a phase has none.
+    """
+    for index, phase in enumerate(problem.phases):
+        if phase.root is None:
+            raise InputError(
+                f"phase {index} has no root: the sampling planner follows a guide path, made of"
+                " the roots of all phases; give them, or use jaxleas contacts GUIDE.npz --scene"
+                " SCENE.json --planner sampling"
+            )
+    feet = list(problem.initial.values())
+    middle = np.mean([foot.position for foot in feet], axis=0)
+    roots = np.array([phase.root for phase in problem.phases])
+    height = float(np.clip(roots[0, 2] - middle[2], *HEIGHTS))
+    heading = math.atan2(*(sum(part(foot.yaw) for foot in feet) for part in (math.sin, math.cos)))
+    places = np.concatenate([(middle + np.array([0.0, 0.0, height]))[None], roots])
+    yaws = np.unwrap([heading, *(phase.yaw for phase in problem.phases)])
+    ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    turns = np.abs(np.diff(yaws))
+    counts = np.ceil(np.maximum(ways / STEP, turns / TURN) - 1e-6)
+    corners = np.concatenate([[0.0], np.cumsum(np.maximum(counts, 1.0))])
+    along = np.arange(corners[-1] + 1.0)
+    position = np.stack([np.interp(along, corners, column) for column in places.T], axis=1)
+    return GuidePath(
+        time=along * TIME,
+        position=position,
+        yaw=np.interp(along, corners, yaws),
+        velocity=np.gradient(position, TIME, axis=0),
+        valid=np.ones(len(along), bool),
+    )
+
+
+def scene_of_problem(problem: ContactProblem) -> Scene:
+    """Return a problem's whole surfaces as a scene; walls, on which no foot stands, as obstacles.
+
+    Raises:
+        InputError: there is nothing but walls.
+    """
+    whole = {name: problem.surfaces[name].vertices for name in problem.whole_surfaces}
+    walls = {name: each for name, each in whole.items() if is_vertical(each)}
+    surfaces = {name: each for name, each in whole.items() if name not in walls}
+    if not surfaces:
+        raise InputError("the problem has no surface but walls: no foot can stand on one")
+    return Scene(surfaces, walls)

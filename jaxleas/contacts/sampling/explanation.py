@@ -1,0 +1,48 @@
+"""Why neither foot went on: how many places each of the planner's tests left."""
+
+import numpy as np
+
+from jaxleas.contacts.problem import FEET
+from jaxleas.contacts.sampling.create import create_contacts
+from jaxleas.contacts.sampling.guides import KeptGuides
+from jaxleas.contacts.sampling.maintain import maintain_contacts
+from jaxleas.contacts.sampling.stance import Stances
+from jaxleas.contacts.sampling.world import World
+
+
+def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) -> str:
+    """Return, for each foot of the first guide path, why it makes no contact at a configuration.
+
+    Args:
+        world: robot, scene, settings.
+        guides: the guide path.
+        stances: where its feet stand.
+        at: number of the kept configuration that was not reached.
+    """
+    guide, here = np.zeros(1, dtype=np.int64), np.array([at])
+    kept = maintain_contacts(world, guides.roots[guides.flat(guide, here)], stances[guide])
+    sentences = []
+    for limb, foot in enumerate(FEET):
+        other = 1 - limb
+        if not kept.limb[0, other]:
+            sentences.append(f"{foot} cannot move, as {FEET[other]} cannot stay where it is")
+            continue
+        tally: dict[str, int] = {}
+        aim = guides.aim(guide, here, np.array([limb]))
+        create_contacts(world, aim, stances[guide], guide, tally=tally)
+        sentences.append(f"{foot} {_first_failed(tally, FEET[other])}")
+    return "; ".join(sentences)
+
+
+def _first_failed(tally: dict[str, int], other: str) -> str:
+    """Return what left no place: the tally counts those left by each test, in order."""
+    before = 0
+    for test, left in tally.items():
+        if left == 0:
+            if test == "leave":
+                return f"cannot be lifted: the centre of mass cannot be over {other}"
+            if test == "near":
+                return "is near no surface with any of its leg's configurations"
+            return f"finds no contact: of {before} places none is {test}"
+        before = left
+    return "finds a contact there, but not after repositioning"
