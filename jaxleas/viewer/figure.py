@@ -69,8 +69,8 @@ def _light(server: "ViserServer") -> None:
     scene = server.scene
     scene.configure_environment_map(None)
     scene.configure_default_lights(enabled=False)
-    scene.add_light_hemisphere("/light/sky", ground_color=(176, 182, 196), intensity=1.7)
-    scene.add_light_directional("/light/sun", intensity=2.1, position=(-4.0, -6.0, 9.0))
+    scene.add_light_hemisphere("/light/sky", ground_color=(176, 182, 196), intensity=2.5)
+    scene.add_light_directional("/light/sun", intensity=2.6, position=(-4.0, -6.0, 9.0))
 
 
 def _add_mesh(
