@@ -90,7 +90,9 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
         case ["python", "train.py", *arguments]:
             parse_train(arguments, monkeypatch)
         case ["python", "-m", module, *arguments]:
-            source = (ROOT / module.replace(".", "/") / "__main__.py").read_text(encoding="utf-8")
+            place = ROOT / module.replace(".", "/")
+            file = place / "__main__.py" if place.is_dir() else place.with_suffix(".py")
+            source = file.read_text(encoding="utf-8")
             for option in (each for each in arguments if each.startswith("--")):
                 assert f'"{option}"' in source, f"{module} has no {option}"
         case ["python", script, *arguments]:
