@@ -1,5 +1,6 @@
 """The function behind `jaxleas view`."""
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -133,6 +134,10 @@ def _require_a_task(
 ) -> None:
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
+    if goal is not None and not all(map(math.isfinite, goal)):
+        raise InputError(f"--goal {goal[0]:g} {goal[1]:g}: give finite numbers x y [m]")
+    if goal is not None and not policies:
+        raise InputError("--goal needs --policies: there is nobody to walk there")
     if record is None:
         return
     if record.suffix != ".html":

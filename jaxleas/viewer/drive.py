@@ -23,7 +23,9 @@ TURN = np.radians(15.0)
 """A press of a key turns the course by this."""
 MOST_STEPS_A_FRAME = 10
 """Beyond this the page would stand still while the robots run."""
-TRAIL_EVERY, TRAIL_LENGTH = 3, 3000  # steps between two drawings; configurations that are kept
+TRAIL_EVERY, SEEN_EVERY = 9, 3
+"""Frames between two drawings of the trail, and of what the policy sees: the page redoes both."""
+TRAIL_LENGTH = 3000  # configurations that are kept
 WORDS = {
     "waiting": "stands, waiting for a goal",
     "walking": "walks",
@@ -43,7 +45,7 @@ class Rider:
     def reset(self) -> None:
         """Go back to the start."""
         self.walker.reset(self._start)
-        self._elapsed = 0.0
+        self._elapsed, self._frames = 0.0, 0
         self._trail = [self._start.position]
         self._draw()
         self.figure.show_trail(np.array(self._trail))
@@ -57,14 +59,17 @@ class Rider:
         """
         if self.walker.state != "walking":
             return
+        self._frames += 1
         self._elapsed = min(self._elapsed + seconds, MOST_STEPS_A_FRAME * self.time_step)
         while self._elapsed >= self.time_step and self.walker.state == "walking":
             self._elapsed -= self.time_step
             steer(self.walker)
             self.walker.step()
             self._trail = [*self._trail[-TRAIL_LENGTH:], self.walker.pose.position]
-            if self.walker.steps % TRAIL_EVERY == 0 or self.walker.state != "walking":
-                self.figure.show_trail(np.array(self._trail))
+        stands = self.walker.state != "walking"
+        if stands or self._frames % TRAIL_EVERY == 0:
+            self.figure.show_trail(np.array(self._trail))
+        if self._frames % SEEN_EVERY == 0:
             self._perceive()
         self._draw()
 

@@ -1,6 +1,6 @@
 """What is drawn of a robot: trunk, ranges of motion, what it sees, where it has been."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -10,7 +10,7 @@ from jaxleas.guide.standing import Pose
 from jaxleas.robots import Robot
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.scene import Scene
-from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_map, mesh_of_polygons
+from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_edges, mesh_of_map, mesh_of_polygons
 
 if TYPE_CHECKING:
     from viser import ViserServer
@@ -22,6 +22,8 @@ DEEP, TALL = np.array([84.0, 99.0, 118.0]), np.array([196.0, 178.0, 142.0])
 """Colours of the lowest and of the highest ground."""
 OBSTACLE = np.array([168.0, 88.0, 70.0])
 EDGE: Colour = (58, 64, 74)
+EDGE_WIDTH = 0.012  # [m]
+NO_SHADOW: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
 ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (150, 84, 170))
 """Of the robots side by side, one after another."""
 INVALID: Colour = (205, 40, 50)
@@ -50,10 +52,25 @@ def draw_terrain(server: "ViserServer", terrain: HeightMap, scene: Scene | None)
         if scene.obstacles:
             obstacles = mesh_of_polygons(scene.obstacles.values())
             _add_mesh(server, "/obstacles", obstacles, (low, high), OBSTACLE)
-        sides = [np.stack([each, np.roll(each, -1, axis=0)], axis=1) for each in scene.polygons]
-        edges = np.concatenate(sides).astype(np.float32)
-        server.scene.add_line_segments("/edges", edges, EDGE, thickness=0.008)
+        edges = mesh_of_edges(scene.polygons, EDGE_WIDTH)
+        server.scene.add_mesh_simple(
+            "/edges", edges.vertices, edges.faces, color=EDGE, side="double", **NO_SHADOW
+        )
+    _light(server)
     look_at_all(server, terrain)
+
+
+def _light(server: "ViserServer") -> None:
+    """Light the scene evenly from above, and more from the south-west.
+
+    Neither shadows nor an environment's reflections: a browser that draws in software spends more
+    than half of its time on them.
+    """
+    scene = server.scene
+    scene.configure_environment_map(None)
+    scene.configure_default_lights(enabled=False)
+    scene.add_light_hemisphere("/light/sky", ground_color=(176, 182, 196), intensity=2.5)
+    scene.add_light_directional("/light/sun", intensity=2.6, position=(-4.0, -6.0, 9.0))
 
 
 def _add_mesh(
@@ -75,7 +92,7 @@ def _add_mesh(
     server.scene.add_mesh_trimesh(
         name,
         trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=solid, process=False),
-        cast_shadow=False,
+        **NO_SHADOW,
     )
 
 
@@ -128,6 +145,7 @@ class Figure:
                 dimensions=tuple(np.subtract(box.high, box.low).tolist()),
                 position=tuple((0.5 * np.add(box.high, box.low)).tolist()),
                 opacity=0.9,
+                **NO_SHADOW,
             )
             for index, box in enumerate(robot.trunk)
         ]
@@ -137,7 +155,7 @@ class Figure:
             [[front, -0.06, 0.1], [front, 0.06, 0.1], [front, 0, 0.2], [front + 0.15, 0, 0.1]]
         )
         scene.add_mesh_simple(
-            f"{name}/nose", nose, _hull(nose), color=(245, 245, 245), side="double"
+            f"{name}/nose", nose, _hull(nose), color=(245, 245, 245), side="double", **NO_SHADOW
         )
         self.reach = [
             scene.add_mesh_simple(
@@ -146,9 +164,7 @@ class Figure:
                 _hull(limb.range_of_motion.vertices),
                 color=LIMBS.get(limb.name, colour),
                 opacity=0.18,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
+                **NO_SHADOW,
             )
             for limb in robot.limbs
         ]
@@ -212,4 +228,8 @@ def draw_line(
 
 
 def _hull(points: Float[np.ndarray, "P 3"]) -> np.ndarray:
-    return ConvexHull(points).simplices
+    """Return the triangles of a convex hull, counter-clockwise from outside."""
+    hull = ConvexHull(points)
+    first, second, third = np.moveaxis(points[hull.simplices], 1, 0)
+    outward = np.einsum("ij,ij->i", np.cross(second - first, third - first), hull.equations[:, :3])
+    return np.where(outward[:, None] > 0.0, hull.simplices, hull.simplices[:, ::-1])

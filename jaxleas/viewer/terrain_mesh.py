@@ -10,6 +10,8 @@ from jaxleas.terrain.height_map import HeightMap
 
 MOST_CELLS = 250_000
 """A larger map is thinned before it is sent: a browser on an old laptop must turn it smoothly."""
+LIFT = 0.004
+"""Of rims above their polygons, which would shimmer through them [m]."""
 
 
 class Mesh(NamedTuple):
@@ -35,6 +37,31 @@ def mesh_of_polygons(polygons: Iterable[Float[np.ndarray, "V 3"]]) -> Mesh:
     return Mesh(np.concatenate([np.zeros((0, 3)), *vertices]), np.reshape(faces, (-1, 3)))
 
 
+def mesh_of_edges(polygons: Iterable[Float[np.ndarray, "V 3"]], width: float) -> Mesh:
+    """Return the rims of convex polygons as strips, just above them.
+
+    Args:
+        polygons: counter-clockwise from outside.
+        width: of a strip [m]; less where a polygon is too small for it.
+    """
+    quads: list[np.ndarray] = [np.zeros((0, 4, 3))]
+    for polygon in polygons:
+        following, before = np.roll(polygon, -1, axis=0), np.roll(polygon, 1, axis=0)
+        ahead, back = following - polygon, before - polygon
+        length = np.linalg.norm(ahead, axis=1, keepdims=True)
+        normal = np.cross(ahead, back)
+        double_area = np.linalg.norm(np.cross(ahead, back), axis=1, keepdims=True)
+        if length.min() < 1e-9 or double_area.min() < 1e-12:
+            continue  # corners on one line have no inner side
+        sine = double_area / (length * np.roll(length, 1, axis=0))
+        narrow = min(width, 0.2 * float((double_area / length).min()))
+        inner = polygon + narrow / sine * (ahead / length + back / np.roll(length, 1, axis=0))
+        up = LIFT * normal[0] / double_area[0]
+        corners = [polygon, following, np.roll(inner, -1, axis=0), inner]
+        quads.append(np.stack(corners, axis=1) + up)
+    return _mesh_of_quads(np.concatenate(quads))
+
+
 def mesh_of_map(terrain: HeightMap) -> Mesh:
     """Return a height map as level cells joined by upright walls: what the policy feels.
 
@@ -51,10 +78,13 @@ def mesh_of_map(terrain: HeightMap) -> Mesh:
     quads.append(_walls(heights, centre_x, centre_y, half))
     # Walls along y are those along x of the transposed map.
     quads.append(_walls(heights.T, centre_y.T, centre_x.T, half)[:, ::-1, [1, 0, 2]])
-    corners = np.concatenate(quads)
-    first = 4 * np.arange(len(corners))[:, None, None]
+    return _mesh_of_quads(np.concatenate(quads))
+
+
+def _mesh_of_quads(quads: Float[np.ndarray, "Q 4 3"]) -> Mesh:
+    first = 4 * np.arange(len(quads))[:, None, None]
     faces = first + np.array([[0, 1, 2], [0, 2, 3]])
-    return Mesh(corners.reshape(-1, 3), faces.reshape(-1, 3))
+    return Mesh(quads.reshape(-1, 3), faces.reshape(-1, 3))
 
 
 def _thinned(terrain: HeightMap) -> tuple[np.ndarray, float, tuple[float, float]]:

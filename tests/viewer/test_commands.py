@@ -87,6 +87,8 @@ def test_bad_input_is_one_sentence(terrain, tmp_path):
         ({"record": tmp_path / "a.mp4"}, "written as .html"),
         ({"record": tmp_path / "a.html"}, "something that moves"),
         ({"record": tmp_path / "a.html", "policies": [terrain]}, "--goal"),
+        ({"goal": (np.nan, 0.0), "policies": [terrain]}, "--goal nan 0: give finite numbers"),
+        ({"goal": (1.0, 0.0)}, "--goal needs --policies"),
         ({"guide": terrain}, "lacks the array"),
         ({"port": 70_000}, "no port"),
     ):

@@ -3,7 +3,14 @@ import pytest
 
 from jaxleas.terrain import HeightMap, rasterise, transition
 from jaxleas.viewer import terrain_mesh
-from jaxleas.viewer.terrain_mesh import Mesh, meet, mesh_of_map, mesh_of_polygons
+from jaxleas.viewer.terrain_mesh import (
+    LIFT,
+    Mesh,
+    meet,
+    mesh_of_edges,
+    mesh_of_map,
+    mesh_of_polygons,
+)
 from tests.guide.walkers import flat_map
 
 
@@ -69,3 +76,24 @@ def test_a_ray_meets_what_stands_in_the_way_and_the_void_is_no_hole_in_the_world
     beside = meet(terrain, np.array([3.0, -5.0, 9.0]), np.array([0.0, 0.0, -1.0]))
     assert beside == pytest.approx([3.0, -5.0, np.nanmin(terrain.heights)])
     assert meet(terrain, np.array([0.0, 0.0, 3.0]), np.array([1.0, 0.0, 0.2])) is None
+
+
+def test_rims_lie_within_their_polygons_and_just_above():
+    scene = transition("rubble", 7).scene
+    width = 0.012
+    mesh = mesh_of_edges(scene.polygons, width)
+    assert len(mesh.faces) == 2 * sum(map(len, scene.polygons))
+    vectors = triangle_vectors(mesh)
+    assert vectors[:, 2].min() > 0.0
+    area = np.linalg.norm(vectors, axis=1).sum()
+    around = sum(
+        np.linalg.norm(np.roll(each, -1, axis=0) - each, axis=1).sum() for each in scene.polygons
+    )
+    # A strip along each side, less the square that two of them share at each corner.
+    assert 0.97 * width * around < area < width * around
+    square = np.array([[0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1]], float)
+    strips = mesh_of_edges([square], 0.1)
+    assert np.unique(strips.vertices[:, 0].round(6)).tolist() == [0.0, 0.1, 1.9, 2.0]
+    assert strips.vertices[:, 2] == pytest.approx(1.0 + LIFT)
+    line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
+    assert not len(mesh_of_edges([line], 0.1).faces)
