@@ -74,7 +74,7 @@ def learned_kinds(folder: Path) -> list[Kind]:
     (step,) = (folder / "checkpoints").glob("step_*.npz")
 
     def walk(path: Path) -> None:
-        load_policy(path)(np.zeros((2, size), np.float32))
+        load_policy(path)(np.zeros((2, size), np.float32))  # type: ignore[arg-type]
 
     def restore(path: Path) -> None:
         found = Checkpoints(path.parent)

@@ -107,7 +107,9 @@ def _reason(error: Exception) -> str:
 
 def _session(content: bytes, path: object) -> Any:
     import onnxruntime
-    from onnxruntime.capi import onnxruntime_pybind11_state as refusals
+    from onnxruntime.capi import onnxruntime_pybind11_state  # type: ignore[attr-defined]
+
+    refusals: Any = onnxruntime_pybind11_state
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
