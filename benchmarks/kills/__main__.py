@@ -42,7 +42,7 @@ def main() -> int:
             command += f" --parallel {given.parallel}"
         else:
             reports = _alone(given.kills, given.seed, folder)
-        done: dict[str, Any] = {"failures": ["nothing was killed"]}
+        done: dict[str, Any] = {"failures": ["nothing was done"]}
         for report in reports:
             done = report | {"command": command, "seconds": round(time.monotonic() - begun)}
             if given.json:

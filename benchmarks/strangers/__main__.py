@@ -92,11 +92,15 @@ def _one_process(first: int, last: int, seed: int, only: str | None, tally: Tall
     )
     os.close(writing)
     begun: dict[str, Any] | None = None
-    pending, hung = b"", False
+    pending, hung, spent = b"", False, 0.0
     with os.fdopen(reading, "rb", buffering=0) as stream:
         while True:
             ready, _, _ = select.select([stream], [], [], SILENCE)
             hung = not ready
+            if hung and _is_held_up(process.pid, spent):
+                hung = False
+                continue
+            spent = _cpu_seconds(process.pid)
             chunk = stream.read(65536) if ready else b""
             if not chunk:
                 break
@@ -129,6 +133,17 @@ def _one_process(first: int, last: int, seed: int, only: str | None, tally: Tall
         }
     )
     return begun["begins"] + 1
+
+
+def _is_held_up(pid: int, spent: float) -> bool:
+    """Tell whether a silent process was stopped or starved, rather than busy with one input."""
+    state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    return state != "Z" and _cpu_seconds(pid) - spent < SILENCE / 2
+
+
+def _cpu_seconds(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 """Policies, surrogates, checkpoints."""
 
 from pathlib import Path
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -75,8 +74,7 @@ def learned_kinds(folder: Path) -> list[Kind]:
     (step,) = (folder / "checkpoints").glob("step_*.npz")
 
     def walk(path: Path) -> None:
-        policy: Any = load_policy(path)
-        policy(np.zeros((2, size), np.float32))
+        load_policy(path)(np.zeros((2, size), np.float32))  # type: ignore[arg-type]
 
     def restore(path: Path) -> None:
         found = Checkpoints(path.parent)

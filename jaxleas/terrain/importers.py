@@ -6,6 +6,7 @@ import zlib
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Int
 
 from jaxleas.files import read_bytes
 from jaxleas.terrain.height_map import (
@@ -116,7 +117,7 @@ def import_png(
     if not (np.isfinite([z_min, z_max]).all() and z_min < z_max):
         raise InputError(f"{path}: z_min {z_min:g} m must be below z_max {z_max:g} m")
     values = np.flipud(_grey_values(Path(path)))
-    heights = np.empty(values.shape, np.float32)
+    heights: np.ndarray = np.empty(values.shape, np.float32)
     for row, line in enumerate(values):  # in float64, a row at a time
         heights[row] = z_min + (z_max - z_min) * (line / WHITE)
     if zero_is_void:
@@ -128,7 +129,7 @@ def import_png(
     return HeightMap(heights, float(resolution), (0.5 * resolution, 0.5 * resolution))
 
 
-def _grey_values(path: Path) -> np.ndarray:
+def _grey_values(path: Path) -> Int[np.ndarray, "rows columns"]:
     from PIL import Image
 
     content = read_bytes(path, MAX_PNG_BYTES)
@@ -137,11 +138,13 @@ def _grey_values(path: Path) -> np.ndarray:
         raise InputError(f"{path} has {width} x {height} pixels, more than {MAX_CELLS}")
     try:
         with Image.open(io.BytesIO(content), formats=("PNG",)) as image:
+            if image.size != (width, height):
+                raise InputError(f"{path} is not a readable PNG image: it states two sizes")
             if not image.mode.startswith("I"):
                 raise InputError(
                     f"{path} is a PNG of mode {image.mode}; heights need 16-bit grey (mode I;16)"
                 )
-            return np.asarray(image).astype(np.uint16)
+            return np.asarray(image).astype(np.uint16).reshape(height, width)
     # Pillow's own, over chunks that are cut short or hold something else; texts in them it bounds.
     except (OSError, ValueError, SyntaxError, IndexError, struct.error, zlib.error) as error:
         words = " ".join(str(error).split())[:100]
