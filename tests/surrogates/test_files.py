@@ -175,7 +175,7 @@ def changed(labelled, tmp_path, change):
     ("change", "sentence"),
     [
         (lambda c: c["provenance"].update(robot="atlas"), "or on another robot, than"),
-        (lambda c: c.update(version=1), "verdict file of version 1; this version reads 2"),
+        (lambda c: c.update(version=1), "is of version 1; this jaxleas reads version 2"),
         (lambda c: c["verdicts"][0].pop("last_index"), "is no verdict file"),
     ],
 )
