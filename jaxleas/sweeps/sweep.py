@@ -1,5 +1,6 @@
 """A sweep from its file to its report."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from jaxleas.sweeps.results import TrialResult
 from jaxleas.sweeps.runners import engage
 from jaxleas.sweeps.storage import require_optuna
 from jaxleas.sweeps.study import Study
+from jaxleas.types import InputError
 
 REPORT = "report.html"
 
@@ -45,10 +47,16 @@ def run_sweep(
     """
     require_optuna()
     sweep = sweep if isinstance(sweep, Sweep) else open_sweep(sweep)
+    is_new = not Path(out).exists()
     folder = open_folder(Path(out), sweep)
     try:
-        study = Study(sweep, folder, storage)
-        runner = engage(workers, sweep.config.parallel if parallel is None else parallel)
+        try:
+            study = Study(sweep, folder, storage)
+            runner = engage(workers, sweep.config.parallel if parallel is None else parallel)
+        except InputError:
+            if is_new:  # nothing is left of a sweep that could not begin
+                shutil.rmtree(folder.path)
+            raise
         results = Conductor(sweep, folder, study, runner, on_change).run()
         page = report_html(sweep, results, study.importance(), folder)
         write_text(folder.path / REPORT, page)

@@ -9,6 +9,7 @@ from jaxleas.sweeps import storage as storages
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
 from jaxleas.sweeps.study import Study
+from jaxleas.sweeps.sweep import run_sweep
 from jaxleas.types import InputError
 from tests.sweeps.files import write_sweep
 from tests.sweeps.pretended import PRETENDER, conduct
@@ -77,6 +78,12 @@ def test_a_storage_that_cannot_be_reached_is_one_sentence(tmp_path, storage, sai
     with pytest.raises(InputError, match=said) as refusal:
         storages.open_storage(storage.format(port=free_port()), tmp_path / "journal.log")
     assert "\n" not in str(refusal.value)
+
+
+def test_a_sweep_that_cannot_begin_leaves_nothing_behind(tmp_path):
+    with pytest.raises(InputError, match="a database URL"):
+        run_sweep(write_sweep(tmp_path), tmp_path / "out", storage="somewhere")
+    assert not (tmp_path / "out").exists()
 
 
 def test_without_optuna_one_sentence_says_which_extra(monkeypatch):
