@@ -133,7 +133,9 @@ def _robustness(stood: Stood, mass: float, friction: float) -> float:
         for point in stood.corners[foot]:
             columns += [np.concatenate([g, np.cross(point, g)]) for g in cone]
     G = np.column_stack(columns)
-    weight = np.array([0.0, 0.0, mass * 9.81])
+    # In units of the weight: the solver's tolerances are absolute, and ours is a millionth.
+    newtons = mass * 9.81
+    weight = np.array([0.0, 0.0, 1.0])
     wrench = np.concatenate([weight, np.cross(stood.com, weight)])
     count = G.shape[1]
     answer = linprog(
@@ -143,8 +145,9 @@ def _robustness(stood: Stood, mass: float, friction: float) -> float:
         A_eq=np.column_stack([G, np.zeros(6)]),
         b_eq=wrench,
         bounds=[(None, None)] * (count + 1),
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
     )
-    return float(answer.x[-1]) * scale if answer.status == 0 else -math.inf
+    return float(answer.x[-1]) * newtons * scale if answer.status == 0 else -math.inf
 
 
 def _require_fitting(plan: ContactPlan, guide: GuidePath, scene: Scene) -> tuple[Posture, ...]:

@@ -27,7 +27,7 @@ def write_surrogate(path: str | Path, surrogate: Surrogate) -> None:
     metadata = {
         "format": FORMAT,
         "identity": surrogate.identity.model_dump(mode="json"),
-        "report": surrogate.report,
+        "report": surrogate.report or {},
     }
     write_npz(
         path,
@@ -71,7 +71,7 @@ def read_surrogate(path: str | Path) -> Surrogate:
         scale=jnp.asarray(arrays["scale"]),
         shift=jnp.asarray(arrays["shift"]),
         identity=identity,
-        report=report,
+        report=report or (),
     )
 
 

@@ -91,6 +91,8 @@ def test_shipped_configurations_run_when_made_small(path, start, tmp_path):
         "fit": {"epochs": 1, "code": 8, "hidden": 4, "held_out": 0.5},
         "judge": {"suites": ["hole"], "starts": 2},
     }
+    if config.planner != "sampling":  # these two fail only where the root hardly can be followed
+        small["collect"] |= {"disturbances": [3.0], "guides": 600}
     practice = config.practice.model_dump() | {"steps": 640, "steps_before": 640}
     parameters = config.parameters | ({"samples": 500} if config.planner == "sampling" else {})
     shrunk = DistillationConfig.model_validate(
@@ -102,8 +104,9 @@ def test_shipped_configurations_run_when_made_small(path, start, tmp_path):
     cli.run([*command, "--start", str(start), "--processes", "1"])
     observed = config.practice.observation or "thesis144"
     assert read_policy(out.policy).config.observation == observed
-    identity = read_surrogate(out.surrogate).identity
-    assert (identity.planner, identity.observation) == (config.planner, observed)
+    if config.mode == "surrogate":
+        identity = read_surrogate(out.surrogate).identity
+        assert (identity.planner, identity.observation) == (config.planner, observed)
     assert [each["round"] for each in read_json(out.table)["rounds"]] == [0, 1]
 
 
