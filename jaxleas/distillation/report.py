@@ -1,6 +1,5 @@
 """The report of a distilled run: one HTML file, from the files of its folder alone."""
 
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +8,7 @@ from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, best_round, read_run_data
 from jaxleas.distillation.report_pictures import draw_calibration, draw_learning, draw_rounds
 from jaxleas.evaluation.figure_pictures import draw_figures
+from jaxleas.evaluation.page import page_template
 from jaxleas.evaluation.published import thesis
 from jaxleas.evaluation.report import inline
 from jaxleas.evaluation.side_by_side import PLANNER_TITLES
@@ -42,15 +42,9 @@ def write_distilled_report(run: Path, out: Path | None = None) -> Path:
 
 def render(data: RunData, config: DistillationConfig) -> str:
     """Return the report's HTML: images inline, nothing fetched, no scripts."""
-    from jinja2 import Environment, StrictUndefined
-
-    text = resources.files("jaxleas.distillation").joinpath(TEMPLATE).read_text(encoding="utf-8")
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     figures = draw_figures(data.figures) if data.figures is not None else []
     best = best_round(data.rounds)
-    return environment.from_string(text).render(
+    return page_template("jaxleas.distillation", TEMPLATE).render(
         name=data.path.resolve().name,
         planner=PLANNER_TITLES[config.planner],
         mode=config.mode,

@@ -1,6 +1,6 @@
 """The thesis's figures 4.17 and 5.6 to 5.9, drawn from a figure file."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from typing import TYPE_CHECKING
 
@@ -43,8 +43,10 @@ def draw_figures(figures: Figures) -> list[Picture]:
     seed = f"{'held-out' if figures.held_out else 'evaluation'} seed {figures.seed}"
     if basic:
         words = f"{basic[0].starts} starts a scenario, {planner} planner, {seed}. {dots}"
-        pictures.append(_picture("5.6", _by_step(basic, kept), f"Success by mean step: {words}"))
-        picture = _by_count(basic, kept)
+        pictures.append(
+            _picture("5.6", _by_scenario(basic, kept, _success), f"Success by mean step: {words}")
+        )
+        picture = _by_scenario(basic, kept, _time)
         pictures.append(_picture("5.7", picture, f"Planning time by number of steps: {words}"))
     if figures.courses:
         words = f"Steps along the long course, one guide path a method, 1 in {kept}, {seed}."
@@ -85,19 +87,10 @@ def _heights_words(figures: Figures) -> str:
     )
 
 
-def _by_step(rows: Sequence[StepRow], kept: int) -> "Figure":
+def _by_scenario(rows: Sequence[StepRow], kept: int, draw: Callable[..., None]) -> "Figure":
     figure = _figure(10.4, 3.5)
     for ax, name in zip(figure.subplots(1, len(BASIC)), BASIC, strict=True):
-        _success(ax, [row for row in rows if row.cell == name], kept)
-        ax.set_title(cell_title(name), loc="left", fontsize=10)
-    _legend(figure)
-    return figure
-
-
-def _by_count(rows: Sequence[StepRow], kept: int) -> "Figure":
-    figure = _figure(10.4, 3.5)
-    for ax, name in zip(figure.subplots(1, len(BASIC)), BASIC, strict=True):
-        _time(ax, [row for row in rows if row.cell == name], kept)
+        draw(ax, [row for row in rows if row.cell == name], kept)
         ax.set_title(cell_title(name), loc="left", fontsize=10)
     _legend(figure)
     return figure

@@ -4,13 +4,13 @@ import base64
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
 from jaxleas.evaluation.gallery import Picture, draw_gallery
 from jaxleas.evaluation.learning_curves import draw_learning_curves
+from jaxleas.evaluation.page import page_template
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.table import (
@@ -94,14 +94,8 @@ def render_report(
         evaluations: one a suite.
         pictures: in the order they appear.
     """
-    from jinja2 import Environment, StrictUndefined
-
-    text = resources.files("jaxleas.evaluation").joinpath(TEMPLATE).read_text(encoding="utf-8")
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     by_suite = {evaluation.suite: evaluation for evaluation in evaluations}
-    return environment.from_string(text).render(
+    return page_template("jaxleas.evaluation", TEMPLATE).render(
         name=run.resolve().name,
         headlines=headlines(by_suite, metrics),
         success=success_rows(by_suite.get("transitions")),
