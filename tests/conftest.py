@@ -1,16 +1,40 @@
-"""Strict JAX for every test: no silent broadcasting between ranks, no NaN passes unseen."""
+"""Strict JAX for every test: no silent broadcasting between ranks, no NaN passes unseen.
 
+One run of the tests compiles a program once, whichever test or process asks for it: the cache is
+new in every run and goes with it.
+"""
+
+import atexit
 import os
+import shutil
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
-import jax
 import pytest
+
+if "JAX_COMPILATION_CACHE_DIR" not in os.environ:  # the workers of pytest-xdist inherit ours
+    _CACHE = tempfile.mkdtemp(prefix="jaxleas-tests-")
+    atexit.register(shutil.rmtree, _CACHE, ignore_errors=True)
+    os.environ["JAX_COMPILATION_CACHE_DIR"] = _CACHE
+    os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
+
+import jax  # after its environment variables
 
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_debug_nans", True)
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", "")  # tests measure nothing cached
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _comes_back() -> Iterator[None]:
+    """A file of tests that moves to another folder, and stays there, breaks those after it."""
+    before = Path.cwd()
+    yield
+    after = Path.cwd()
+    os.chdir(before)
+    assert after == before, f"this file's tests end in {after}"
 
 
 @pytest.fixture

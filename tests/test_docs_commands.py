@@ -12,8 +12,8 @@ A python block needs `<!-- runs -->` before it, or such a title. A new command w
 in `stock` fails: add the files there, or the title to the block.
 """
 
+import contextlib
 import functools
-import os
 import re
 import shlex
 import shutil
@@ -23,11 +23,9 @@ from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
-import jax
 import numpy as np
 import pytest
 import trimesh
-from jax.experimental.compilation_cache import compilation_cache
 from PIL import Image
 
 from jaxleas import cli
@@ -108,28 +106,24 @@ def test_no_command_hides_in_another_block() -> None:
             assert block.language == "sh" or not command.search(block.body), page
 
 
-@pytest.fixture(scope="module", autouse=True)
-def compiled_once(tmp_path_factory) -> Iterator[None]:
-    """Keep compiled programs from page to page: the pages ask for the same ones."""
-    settings = {
-        "jax_compilation_cache_dir": str(tmp_path_factory.mktemp("compiled")),
-        "jax_persistent_cache_min_compile_time_secs": 0.0,
-    }
-    before = {name: getattr(jax.config, name) for name in settings}
-    for name, value in settings.items():
-        jax.config.update(name, value)
-    compilation_cache.reset_cache()
-    yield
-    for name, value in before.items():
-        jax.config.update(name, value)
-    compilation_cache.reset_cache()
-
-
 @pytest.fixture(scope="module")
 def stock(tmp_path_factory) -> Path:
     """What the pages name: runs, terrains, guide paths, problems. Made once; pages get copies."""
     folder = tmp_path_factory.mktemp("docs")
-    os.chdir(folder)
+    with contextlib.chdir(folder):
+        _fill_here()
+    return folder
+
+
+@pytest.fixture
+def workplace(stock: Path, tmp_path: Path, monkeypatch) -> Path:
+    shutil.copytree(stock, tmp_path / "work")
+    monkeypatch.chdir(tmp_path / "work")
+    monkeypatch.syspath_prepend(str(ROOT))
+    return tmp_path / "work"
+
+
+def _fill_here() -> None:
     floor = np.array([[-2.0, -2, 0], [20, -2, 0], [20, 10, 0], [-2, 10, 0]])
     scene = Scene({"floor": floor})
     guides = [straight(1.2), straight(2.0, y=1.0)]
@@ -154,15 +148,6 @@ def stock(tmp_path_factory) -> Path:
         run = make_run(Path("runs") / name, seed=len(name))
         write_policy(run / "policy.npz", homing_policy())
     shutil.copytree(ROOT / "configs", "configs")
-    return folder
-
-
-@pytest.fixture
-def workplace(stock: Path, tmp_path: Path, monkeypatch) -> Path:
-    shutil.copytree(stock, tmp_path / "work")
-    monkeypatch.chdir(tmp_path / "work")
-    monkeypatch.syspath_prepend(str(ROOT))
-    return tmp_path / "work"
 
 
 class Runner:

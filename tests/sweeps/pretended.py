@@ -11,7 +11,7 @@ from jaxleas.sweeps.results import TrialResult
 from jaxleas.sweeps.runners import Processes
 from jaxleas.sweeps.study import Study
 
-PRETENDER = (sys.executable, "-m", "tests.sweeps.pretender")
+PRETENDER = (sys.executable, str(Path(__file__).with_name("pretender.py")))
 
 
 def conduct(path: Path, out: Path, command=PRETENDER, storage=None) -> list[TrialResult]:

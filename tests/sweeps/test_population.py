@@ -42,15 +42,6 @@ OTHER = {
 }
 
 
-@pytest.fixture(scope="module")
-def compiled_once(tmp_path_factory):
-    """Keep compiled programs for this file: all its populations are of one program."""
-    before = jax.config.jax_compilation_cache_dir  # type: ignore[attr-defined]
-    jax.config.update("jax_compilation_cache_dir", str(tmp_path_factory.mktemp("xla")))
-    yield
-    jax.config.update("jax_compilation_cache_dir", before)
-
-
 def rows_of(run):
     rows = [json.loads(line) for line in (run / "metrics.jsonl").read_text().splitlines()]
     return [{name: value for name, value in row.items() if name != "seconds"} for row in rows]
@@ -90,7 +81,7 @@ def test_a_populations_folder_is_one_populations(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("brax_ranks", "compiled_once")
+@pytest.mark.usefixtures("brax_ranks")
 def test_a_member_is_what_it_would_be_alone(tmp_path):
     configs = (tiny(), with_values(tiny(), OTHER, "test"))
     runs = [tmp_path / "member_00", tmp_path / "member_01"]
@@ -111,7 +102,7 @@ def test_a_member_is_what_it_would_be_alone(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("brax_ranks", "compiled_once")
+@pytest.mark.usefixtures("brax_ranks")
 def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkeypatch):
     space = {"ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True)}
     values = tuple({"ppo.learning_rate": rate} for rate in (1e-3, 5e-3))
