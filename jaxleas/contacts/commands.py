@@ -95,8 +95,10 @@ def check(
         _check_postures(plan, read, problem, guide, scene, query, picture)
         return
     if problem is None:
-        raise InputError(f"{plan} is of the {read.planner} planner: say which problem it answers:"
-            f" jaxleas check {plan} PROBLEM.json")
+        raise InputError(
+            f"{plan} is of the {read.planner} planner: say which problem it answers:"
+            f" jaxleas check {plan} PROBLEM.json"
+        )
     asked = read_problem(problem)
     worst = certify(asked, read)
     if picture is not None:

@@ -188,7 +188,8 @@ def _refuse_other_rotations(where: str, content: dict[str, Any]) -> None:
     for key in OTHER_ROTATIONS:
         if key in content:
             raise InputError(
-                f"{where}: '{key}' is not read; rotations are about the vertical only: give yaw [rad]"
+                f"{where}: '{key}' is not read; rotations are about the vertical only: give yaw, in"
+                " radians"
             )
 
 
