@@ -17,6 +17,7 @@ from jaxleas.distillation.folder import DistillationFolder, RoundFolder, read_do
 from jaxleas.distillation.judging import exact_success, judge_round, summary
 from jaxleas.distillation.labelling import Ground, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.rounds_file import VERSION
 from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import atomic_path, write_json
@@ -272,7 +273,9 @@ class Distillation:
 
     def _keep(self, results: list[RoundResult]) -> None:
         """Write the table, and keep the best round's policy and surrogate at hand."""
-        write_json(self.folder.table, {"version": 1, "rounds": [asdict(each) for each in results]})
+        write_json(
+            self.folder.table, {"version": VERSION, "rounds": [asdict(each) for each in results]}
+        )
         best = max(results[1:], key=lambda result: (result.success, -result.round))
         source = self.folder.round(best.round)
         files = {source.policy: self.folder.policy}
