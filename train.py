@@ -101,13 +101,14 @@ def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> 
 
 
 def _conclude(config: "RunConfig", run: "RunFolder") -> None:
+    if not config.final.evaluate:
+        return
     from jaxleas.evaluation.commands import evaluate, report
     from jaxleas.export.commands import export
 
-    if config.final.evaluate:
-        evaluate(run.path, starts=config.final.starts)
-        export(run.path)
-        report(run.path)
+    evaluate(run.path, starts=config.final.starts)
+    export(run.path)
+    report(run.path)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -9,6 +9,8 @@ from pathlib import Path
 FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
+# A full disk, a name that no file can have, files that are not ours to read or write.
+_NOT_OUR_DOING = (*(errno.ENOSPC, errno.EDQUOT, errno.ENAMETOOLONG), *(errno.EACCES, errno.EROFS))
 
 
 class UsageError(Exception):
@@ -18,10 +20,10 @@ class UsageError(Exception):
 def run_guarded(main: Callable[[], None]) -> int:
     """Run `main` and return the exit code of the process.
 
-    A `JaxleasError`, a wrong command line and a full disk become one sentence on standard error
-    and exit code 2 (or the error's own `exit_code`); Ctrl-C is quiet and gives 130; anything else
-    is a bug of ours and keeps its traceback. With `--traceback` on the command line, or
-    JAXLEAS_TRACEBACK set, every error keeps it.
+    A `JaxleasError`, a wrong command line, a full disk and files that are not ours to touch become
+    one sentence on standard error and exit code 2 (or the error's own `exit_code`); Ctrl-C is quiet
+    and gives 130; anything else is a bug of ours and keeps its traceback. With `--traceback` on the
+    command line, or JAXLEAS_TRACEBACK set, every error keeps it.
 
     Args:
         main: what to run; reads `sys.argv` only when called, since `--traceback` is taken out.
@@ -52,5 +54,5 @@ def _is_for_people(error: Exception) -> bool:
         return True
     from jaxleas.types.errors import JaxleasError
 
-    disk_full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
-    return disk_full or isinstance(error, JaxleasError)
+    not_our_doing = isinstance(error, OSError) and error.errno in _NOT_OUR_DOING
+    return not_our_doing or isinstance(error, JaxleasError)

@@ -166,6 +166,8 @@ class StoppedError(JaxleasError):
         (InputError("x.yaml:\n no key"), 2, "jaxleas: x.yaml: no key\n"),
         (UsageError("no command"), 2, "jaxleas: no command\n"),
         (OSError(28, "No space left on device", "x.npz"), 2, "No space left on device: 'x.npz'"),
+        (OSError(36, "File name too long", "a" * 300), 2, "File name too long"),
+        (PermissionError(13, "Permission denied", "x.npz"), 2, "Permission denied: 'x.npz'"),
         (StoppedError("stopped"), 130, "jaxleas: stopped\n"),
         (KeyboardInterrupt(), 130, ""),
     ],

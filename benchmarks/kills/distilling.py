@@ -18,7 +18,8 @@ from pathlib import Path
 
 import yaml
 
-from benchmarks.kills.training import CONFIG, content
+from benchmarks.kills.training import content
+from benchmarks.tiny import tiny_training
 from jaxleas.files import read_json, write_json
 from jaxleas.files.npz import read_arrays
 from jaxleas.labels import read_verdicts
@@ -60,7 +61,8 @@ def main() -> int:
 
 
 def _compare(folder: Path, draw: random.Random) -> dict[str, object]:
-    training = CONFIG | {"terrain": CONFIG["terrain"] | {"arenas": 6}}
+    training = tiny_training()
+    training["terrain"]["arenas"] = 6
     (folder / "start.yaml").write_text(yaml.safe_dump(training))
     (folder / "distil.yaml").write_text(yaml.safe_dump(DISTILLATION))
     start = folder / "start"

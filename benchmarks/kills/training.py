@@ -8,29 +8,16 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from benchmarks.tiny import tiny_training
 from jaxleas.files.npz import read_arrays
 from jaxleas.training.metrics import read_metrics
 
-UPDATES, BATCH = 24, 64 * 10
-CONFIG = {
-    "terrain": {"arenas": 2, "generator": {"rows": 3, "columns": 3}},
-    "network": {"hidden": [16, 16]},
-    "ppo": {
-        "steps": UPDATES * BATCH,
-        "environments": 64,
-        "unroll": 10,
-        "minibatches": 2,
-        "epochs": 2,
-        "candidates": 64,
-    },
-    "held_out": {"every": 2, "starts": 16, "arenas": 1, "steps": 40},
-    "final": {"evaluate": False},
-}
+UPDATES = 24
 
 
 def write_config(path: Path) -> None:
     """Write the configuration of the training: seconds long, with a dozen checkpoints."""
-    path.write_text(yaml.safe_dump(CONFIG))
+    path.write_text(yaml.safe_dump(tiny_training(UPDATES)))
 
 
 class Training:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 SILENCE = 90.0  # without a word a process is taken to hang [s]
+A_PROCESS = 20_000  # inputs, then a fresh one: what readers keep (compiled programs) goes with it
 
 
 def main() -> int:
@@ -32,7 +33,7 @@ def main() -> int:
     tally = Tally()
     first, last = given.first, given.first + given.inputs
     while first < last:
-        first = _one_process(first, last, given.seed, given.only, tally)
+        first = _one_process(first, min(first + A_PROCESS, last), given.seed, given.only, tally)
     report = tally.report() | {
         "command": f"python -m benchmarks.strangers --inputs {given.inputs} --seed {given.seed}",
         "seconds": round(time.monotonic() - begun),
@@ -57,10 +58,10 @@ class Tally:
         """Take one line of a process that reads."""
         self.outcomes[line["kind"]][line["outcome"]] += 1
         if line["failure"]:
-            kept = self.failures.setdefault(
-                f"{line['kind']}: {line['failure']}", line | {"times": 0}
-            )
-            kept["times"] += 1
+            name = f"{line['kind']}: {line['failure']}"
+            if name not in self.failures:
+                print(f"input {line['number']}, {name}", flush=True)
+            self.failures.setdefault(name, line | {"times": 0})["times"] += 1
         if line["seconds"] > self.slowest["seconds"]:
             self.slowest = line
         if line["megabytes"] > self.hungriest["megabytes"]:

@@ -4,14 +4,19 @@ from pathlib import Path
 
 from benchmarks.strangers.contact_kinds import contact_kinds
 from benchmarks.strangers.guide_kinds import guide_kinds
+from benchmarks.strangers.judgement_kinds import judgement_kinds
 from benchmarks.strangers.kinds import Kind
 from benchmarks.strangers.learned_kinds import learned_kinds
 from benchmarks.strangers.run_kinds import run_kinds
+from benchmarks.strangers.sweep_kinds import sweep_kinds
 from benchmarks.strangers.terrain_kinds import terrain_kinds
 
 
 def make_corpus(folder: Path) -> list[Kind]:
     """Write the valid files below a folder, mostly with the package's own writers."""
     folder.mkdir(parents=True, exist_ok=True)
-    makers = (terrain_kinds, guide_kinds, learned_kinds, contact_kinds, run_kinds)
+    makers = (
+        *(terrain_kinds, guide_kinds, learned_kinds, contact_kinds),
+        *(run_kinds, judgement_kinds, sweep_kinds),
+    )
     return [kind for make in makers for kind in make(folder)]

@@ -34,8 +34,8 @@ class Kind:
         """Return what a stranger might send."""
         chance = draw.random()
         if chance < 0.55:
-            # Mutations of mutations may nest deeper than Python's own writers go.
-            with contextlib.suppress(RecursionError):
+            # What was mutated already may be more than Python's own writers and readers take.
+            with contextlib.suppress(RecursionError, ValueError, OverflowError):
                 return self.mutate(draw, self.content)
         if chance < 0.9:
             return m.mutate_bytes(draw, self.content)

@@ -4,6 +4,7 @@ import copy
 import json
 import random
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -123,7 +124,7 @@ def mutate_yaml(draw: random.Random, whole: bytes) -> bytes:
         "{" * 3000,
         "- " * 3000,
     )
-    stated = yaml.safe_load(whole)
+    stated = _stated(whole)
     if draw.random() < 0.3:
         return (
             whole
@@ -135,6 +136,11 @@ def mutate_yaml(draw: random.Random, whole: bytes) -> bytes:
         return yaml.safe_dump(value).encode(errors="surrogatepass")
     except (RecursionError, ValueError):  # too deep, or a number of too many digits for PyYAML
         return json.dumps(value, default=str).encode()
+
+
+@lru_cache(maxsize=64)
+def _stated(whole: bytes) -> Any:
+    return yaml.safe_load(whole)
 
 
 def mutate_text(draw: random.Random, whole: bytes) -> bytes:

@@ -1,4 +1,4 @@
-"""Configurations, run folders, evaluations."""
+"""Configurations and run folders."""
 
 import json
 from functools import partial
@@ -9,69 +9,59 @@ import yaml
 from benchmarks.strangers import mutations as m
 from benchmarks.strangers.kinds import Kind, kind_of
 
+PROVENANCE = {
+    "format": 1,
+    "jaxleas": "0.1",
+    "git": {"revision": "0123456789abcdef", "changed": ["train.py"], "untracked": []},
+    "command": ["train.py", "configs/leas_p1.yaml"],
+    "created": "2026-11-26T12:00:00+00:00",
+}
+
 
 def run_kinds(folder: Path) -> list[Kind]:
-    from jaxleas.distillation.config import DistillationConfig
-    from jaxleas.distillation.judging import read_judged
-    from jaxleas.evaluation.result_file import (
-        CellResult,
-        Evaluation,
-        read_evaluation,
-        write_evaluation,
-    )
+    from jaxleas.records import compare_runs, read_record
+    from jaxleas.records.listing import as_json, table
     from jaxleas.training.config import RunConfig
     from jaxleas.training.configuration import load_config, to_yaml
     from jaxleas.training.metrics import read_metrics
     from jaxleas.training.run_folder import RunFolder
+    from jaxleas.training.watching.identity import lasting_identity
+    from jaxleas.types import InputError
 
+    config, base, metrics = (folder / n for n in ("config.yaml", "base.yaml", "metrics.jsonl"))
     text = to_yaml(RunConfig())
     # The generator's many numbers would be most of it, and reading them most of the time.
-    (folder / "config.yaml").write_text(
-        text[: text.index("terrain:")] + text[text.index("network:") :]
-    )
-    (folder / "base.yaml").write_text(yaml.safe_dump({"ppo": {"steps": 1000}, "seed": 3}))
+    config.write_text(text[: text.index("terrain:")] + text[text.index("network:") :])
+    base.write_text(yaml.safe_dump({"ppo": {"steps": 1000}, "seed": 3}))
     (folder / "extending.yaml").write_text("extends: base.yaml\nppo: {discount: 0.9}\n")
-    (folder / "distil.yaml").write_text("planner: mip\nparameters: {keep_every: 3}\nrounds: 2\n")
     row = {"step": 10, "seconds": 0.5, "walk/reward": 1.5, "held_out/reached": None}
-    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for _ in range(3)))
-    (folder / "provenance.json").write_text(
-        json.dumps({"format": 1, "jaxleas": "0.1", "git": None})
-    )
-    shares = {"reached": 0.9, "invalid": 0.1, "stopped": 0.0, "low": 0.6, "high": 0.98}
-    cell = CellResult.model_validate(
-        {"name": "bridge", "yaw": 0.0, "method": "leas_p1", "starts": 10} | shares
-    )
-    evaluation = Evaluation(
-        suite="transitions", policy="x", robot="talos", seed=0, created="2026", cells=(cell,)
-    )
-    write_evaluation(folder / "evaluation.json", evaluation)
-    (folder / "judged.json").write_text(
-        json.dumps({"version": 1, "cells": [cell.model_dump(mode="json")]})
-    )
+    metrics.write_text("".join(json.dumps(row) + "\n" for _ in range(3)))
+    (folder / "provenance.json").write_text(json.dumps(PROVENANCE))
+    (folder / "wandb.json").write_text(json.dumps({"run": "1a2b3c"}))
 
     def opened(path: Path) -> None:
         RunFolder.open(path.parent, needs_checkpoint=False)
 
+    def listed(path: Path) -> None:
+        record = read_record(path.parent)  # never fails: a damaged one says so
+        lines = table([record], path.parent, 100)
+        json.dumps(as_json(record))
+        compare_runs([record, record])
+        lines.encode()
+        if record.state == "damaged":
+            raise InputError(record.problem)
+
+    def identity(path: Path) -> None:
+        lasting_identity(path, lambda: "another")
+
     run_config = partial(load_config, RunConfig)
+    provenance = folder / "provenance.json"
     return [
-        kind_of("configuration", folder / "config.yaml", run_config, m.mutate_yaml),
-        kind_of(
-            "extending configuration",
-            folder / "extending.yaml",
-            run_config,
-            m.mutate_yaml,
-            folder / "base.yaml",
-        ),
-        kind_of(
-            "distillation configuration",
-            folder / "distil.yaml",
-            partial(load_config, DistillationConfig),
-            m.mutate_yaml,
-        ),
-        kind_of("metrics", folder / "metrics.jsonl", read_metrics, m.mutate_lines),
-        kind_of(
-            "run folder", folder / "provenance.json", opened, m.mutate_json, folder / "config.yaml"
-        ),
-        kind_of("evaluation", folder / "evaluation.json", read_evaluation, m.mutate_json),
-        kind_of("judged round", folder / "judged.json", read_judged, m.mutate_json),
+        kind_of("configuration", config, run_config, m.mutate_yaml),
+        kind_of("extending", folder / "extending.yaml", run_config, m.mutate_yaml, base),
+        kind_of("metrics", metrics, read_metrics, m.mutate_lines),
+        kind_of("run folder", provenance, opened, m.mutate_json, config),
+        kind_of("listed run", provenance, listed, m.mutate_json, config, metrics),
+        kind_of("listed configuration", config, listed, m.mutate_yaml, provenance, metrics),
+        kind_of("identity", folder / "wandb.json", identity, m.mutate_json),
     ]

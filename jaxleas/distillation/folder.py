@@ -1,6 +1,7 @@
 """A distillation's folder: what each round leaves behind, and so how far it has come.
 
 config.yaml             the resolved configuration
+begun_with.json         where the policy to begin with lies
 start/                  run folder of the policy to begin with, where none was given
 round_<k>/labels/       scenes, guide paths and verdicts
 round_<k>/surrogate.npz fitted to the verdicts of all rounds so far
@@ -18,10 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.files import read_json
+from jaxleas.files import read_json, require_version
 from jaxleas.types.errors import InputError
 
 CONFIG = "config.yaml"
+VERSION = 1  # of the whole folder
 
 
 def read_done(path: Path, *keys: str) -> dict[str, Any]:
@@ -35,6 +37,19 @@ def read_done(path: Path, *keys: str) -> dict[str, Any]:
         if not isinstance(content, dict) or type(content.get(key)) not in (int, float):
             raise InputError(f"{path} does not say {key}, a number; without it, it is done again")
     return content
+
+
+def read_begun_with(path: Path) -> str | None:
+    """Return the run folder of the policy that a distillation was begun with; None: its own.
+
+    Raises:
+        InputError: the file does not say.
+    """
+    content = read_json(path)
+    if not isinstance(content, dict) or not isinstance(content.get("run", 0), str | None):
+        raise InputError(f"{path} does not say what the distillation was begun with")
+    require_version(content, VERSION, path)
+    return content["run"]
 
 
 @dataclass(frozen=True)
@@ -91,8 +106,13 @@ class DistillationFolder:
         return self.path / CONFIG
 
     @property
+    def begun_with(self) -> Path:
+        """Where the policy to begin with lies."""
+        return self.path / "begun_with.json"
+
+    @property
     def start(self) -> Path:
-        """Run folder of the policy to begin with."""
+        """Run folder of the policy to begin with, where none was given."""
         return self.path / "start"
 
     @property

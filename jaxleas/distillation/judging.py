@@ -4,14 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from jaxleas.distillation.config import JudgeConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Planner, judge_exact, walker
 from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.files import read_json, require_version, write_json
+from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide.leas import leas
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.types import InputError
@@ -76,12 +74,7 @@ def read_judged(file: Path) -> list[CellResult]:
     if not isinstance(content, dict) or not isinstance(content.get("cells"), list):
         raise InputError(f"{file} holds no verdicts of a round: it needs an object with cells")
     require_version(content, VERSION, file)
-    try:
-        return [CellResult.model_validate(cell) for cell in content["cells"]]
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"])) or "a cell"
-        raise InputError(f"{file} holds no verdicts of a round: {key}: {first['msg']}") from error
+    return typed(list[CellResult], content["cells"], f"{file} holds no verdicts of a round")
 
 
 def exact_success(cells: Sequence[CellResult]) -> float:

@@ -3,16 +3,13 @@
 from pathlib import Path
 
 from jaxleas.distillation.config import DistillationConfig
-from jaxleas.distillation.folder import DistillationFolder
-from jaxleas.files import read_json, require_version, write_json, write_text
+from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
+from jaxleas.files import write_json, write_text
 from jaxleas.labels.settings import settings_from
 from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.loop import train
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.types.errors import InputError
-
-VERSION = 1  # of the whole folder
-_BEGUN_WITH = "begun_with.json"
 
 
 def open_folder(
@@ -35,7 +32,7 @@ def open_folder(
                 f"{folder.path} is a distillation with another configuration, {folder.config}:"
                 " give that one, or another --out"
             )
-        begun_with = _begun_with(folder)
+        begun_with = read_begun_with(folder.begun_with)
         if begun_with != where:
             raise InputError(
                 f"{folder.path} was begun with {begun_with or 'a policy of its own'}, not with"
@@ -44,18 +41,9 @@ def open_folder(
         return config
     if folder.path.exists() and (not folder.path.is_dir() or any(folder.path.iterdir())):
         raise InputError(f"{folder.path} exists and is no distillation: give another --out")
-    write_json(folder.path / _BEGUN_WITH, {"version": VERSION, "run": where})
+    write_json(folder.begun_with, {"version": VERSION, "run": where})
     write_text(folder.config, to_yaml(config))
     return config
-
-
-def _begun_with(folder: DistillationFolder) -> str | None:
-    path = folder.path / _BEGUN_WITH
-    content = read_json(path)
-    if not isinstance(content, dict) or not isinstance(content.get("run"), str | None):
-        raise InputError(f"{path} does not say what the distillation was begun with")
-    require_version(content, VERSION, path)
-    return content.get("run")
 
 
 def train_start(folder: DistillationFolder, config: DistillationConfig) -> Path:
@@ -64,7 +52,7 @@ def train_start(folder: DistillationFolder, config: DistillationConfig) -> Path:
     Raises:
         InputError: this is no distillation's folder.
     """
-    where = _begun_with(folder)
+    where = read_begun_with(folder.begun_with)
     if where is not None:
         return Path(where)
     if (folder.start / "config.yaml").is_file():

@@ -6,14 +6,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.distillation.folder import DistillationFolder, read_begun_with
+from jaxleas.distillation.rounds_file import read_rounds
 from jaxleas.evaluation.figure_file import Figures, read_figures
-from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
-from jaxleas.files import read_json
+from jaxleas.evaluation.result_file import Evaluation, read_evaluation
+from jaxleas.files import is_file
+from jaxleas.labels.shards import read_verdicts
 from jaxleas.training.metrics import read_metrics
 from jaxleas.types.errors import InputError
 
-BEGUN_WITH = "begun_with.json"
 FIGURES = "figures.json"
 MOST_REASONS = 3
 
@@ -54,7 +55,6 @@ class RunData:
     Attributes:
         path: of the run.
         rounds: rows of rounds.json.
-        judged: cells of each round, by number.
         labels: verdicts of each round.
         start: rows of the first training's metrics; none where it is not at hand.
         practice: rows of each round's metrics, in order.
@@ -65,7 +65,6 @@ class RunData:
 
     path: Path
     rounds: list[dict[str, Any]]
-    judged: dict[int, list[CellResult]] = field(default_factory=dict)
     labels: list[LabelCount] = field(default_factory=list)
     start: list[dict[str, Any]] = field(default_factory=list)
     practice: list[list[dict[str, Any]]] = field(default_factory=list)
@@ -76,7 +75,7 @@ class RunData:
 
 def is_distilled(run: Path) -> bool:
     """Tell whether a folder is a distillation's."""
-    return (run / BEGUN_WITH).is_file()
+    return DistillationFolder(run).begun_with.is_file()
 
 
 def read_run_data(run: Path, planner: str) -> RunData:
@@ -94,19 +93,16 @@ def read_run_data(run: Path, planner: str) -> RunData:
         raise InputError(
             f"{run} has no rounds.json yet: no round is finished; go on with jaxleas distill"
         )
-    data = RunData(run, _rounds(folder.table))
+    data = RunData(run, read_rounds(folder.table))
     for row in data.rounds:
         part = folder.round(row["round"])
-        if part.judged.is_file():
-            cells = read_json(part.judged)["cells"]
-            data.judged[row["round"]] = [CellResult.model_validate(cell) for cell in cells]
         if (part.labels / "verdicts").is_dir():
             data.labels.append(count_labels(row["round"], part.labels / "verdicts"))
         if (part.run / "metrics.jsonl").is_file():
             data.practice.append(read_metrics(part.run / "metrics.jsonl"))
-    where = read_json(run / BEGUN_WITH)["run"]
+    where = read_begun_with(folder.begun_with)
     start = folder.start if where is None else Path(where)
-    if (start / "metrics.jsonl").is_file():
+    if is_file(start / "metrics.jsonl"):
         data.start = read_metrics(start / "metrics.jsonl")
     else:
         what = f"the first training's learning curve: {start} is not here"
@@ -142,23 +138,19 @@ def _read_evaluations(data: RunData, run: Path, start: Path, planner: str) -> No
 
 
 def count_labels(number: int, folder: Path) -> LabelCount:
-    """Count a round's verdicts."""
-    verdicts: list[dict[str, Any]] = []
-    for file in sorted(folder.rglob("verdicts_*.json")):
-        content = read_json(file)
-        try:
-            verdicts += content["verdicts"]
-        except (KeyError, TypeError) as error:
-            raise InputError(f"{file} is no verdict file: {error!r}") from error
-    reasons = Counter(
-        _kind(each["reason"]) for each in verdicts if each["decided"] and not each["success"]
-    )
+    """Count a round's verdicts.
+
+    Raises:
+        InputError: a file of them is none.
+    """
+    verdicts = [verdict for _, verdict in read_verdicts(folder)]
+    reasons = Counter(_kind(each.reason) for each in verdicts if each.decided and not each.success)
     return LabelCount(
         round=number,
         guides=len(verdicts),
-        passed=sum(each["success"] for each in verdicts),
-        undecided=sum(not each["decided"] for each in verdicts),
-        seconds=sum(each["seconds"] for each in verdicts) / max(len(verdicts), 1),
+        passed=sum(each.success for each in verdicts),
+        undecided=sum(not each.decided for each in verdicts),
+        seconds=sum(each.seconds for each in verdicts) / max(len(verdicts), 1),
         reasons=tuple(reasons.most_common(MOST_REASONS)),
     )
 
@@ -167,18 +159,6 @@ def _kind(reason: str) -> str:
     """Return a reason without its numbers, so that equal ones count together."""
     words = ("#" if any(map(str.isdigit, word)) else word for word in reason.split())
     return " ".join(words)
-
-
-def _rounds(table: Path) -> list[dict[str, Any]]:
-    content = read_json(table)
-    needed = {"round", "success", "cells", "labels", "seconds", "surrogate"}
-    rounds = content.get("rounds") if isinstance(content, dict) else None
-    if not isinstance(rounds, list) or not rounds:
-        raise InputError(f"{table} holds no `rounds`")
-    for row in rounds:
-        if not isinstance(row, dict) or needed - row.keys():
-            raise InputError(f"{table}: a round lacks one of {', '.join(sorted(needed))}")
-    return rounds
 
 
 def best_round(rounds: Sequence[dict[str, Any]]) -> dict[str, Any]:

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jaxleas.distillation.folder import DistillationFolder, RoundFolder
+from jaxleas.distillation.rounds_file import VERSION
 from jaxleas.files import atomic_path, write_json
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.training.train_state import Learned
 
-VERSION = 1  # of the table
 Say = Callable[[str], None]
 
 

@@ -3,11 +3,10 @@
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from jaxleas.evaluation.result_file import Count, Fraction, Length
-from jaxleas.files import read_json, write_json
-from jaxleas.types.errors import InputError
+from jaxleas.files import read_typed, write_json
 from jaxleas.types.strict import Strict
 
 
@@ -93,10 +92,4 @@ def read_figures(path: str | Path) -> Figures:
     Raises:
         InputError: it is none; the key that is wrong is named.
     """
-    content = read_json(path)
-    try:
-        return Figures.model_validate(content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"]) or "figures"
-        raise InputError(f"{path} is no figure file: {key}: {first['msg']}") from error
+    return read_typed(Figures, path, "figure file")

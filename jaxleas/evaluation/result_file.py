@@ -4,9 +4,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from jaxleas.files import read_json, require_version, write_json
+from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -141,9 +141,4 @@ def read_evaluation(path: str | Path) -> Evaluation:
     if not isinstance(content, dict):
         raise InputError(f"{path} is not an evaluation: it needs an object with `suite`, `cells`")
     require_version(content, VERSION, path)
-    try:
-        return Evaluation.model_validate(content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"]) or "evaluation"
-        raise InputError(f"{path} is not an evaluation: {key}: {first['msg']}") from error
+    return typed(Evaluation, content, f"{path} is not an evaluation")

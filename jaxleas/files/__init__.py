@@ -12,24 +12,29 @@ from jaxleas.files.json_text import parse_json
 from jaxleas.files.keys import refuse_misspelt_keys
 from jaxleas.files.lock import FolderLock
 from jaxleas.files.reading import (
+    is_file,
     read_bytes,
     read_json,
     read_npz,
     require_version,
     require_version_array,
 )
+from jaxleas.files.typed import read_typed, typed
 
 __all__ = [
     "FolderLock",
     "atomic_path",
+    "is_file",
     "parse_json",
     "read_bytes",
     "read_json",
     "read_npz",
+    "read_typed",
     "refuse_misspelt_keys",
     "require_version",
     "require_version_array",
     "sweep_temporaries",
+    "typed",
     "write_bytes",
     "write_json",
     "write_npz",

@@ -93,6 +93,14 @@ def require_version_array(arrays: dict[str, np.ndarray], version: int, where: st
         require_version({"version": stated}, version, where)
 
 
+def is_file(path: str | Path) -> bool:
+    """Whether there is such a file; a name that no file can have is none."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def _require_file(path: str | Path) -> None:
     try:
         if Path(path).is_dir():

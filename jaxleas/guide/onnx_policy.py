@@ -36,10 +36,19 @@ class OnnxPolicy:
     _session: Any = field(repr=False, compare=False)
 
     def __call__(self, observation: Float[np.ndarray, "*batch size"]) -> np.ndarray:
-        """Return acceleration in the root frame [m/s^2] and turn rate [rad/s]."""
+        """Return acceleration in the root frame [m/s^2] and turn rate [rad/s].
+
+        Raises:
+            InputError: the graph fails, or answers something else than a command a row.
+        """
         observation = np.asarray(observation, np.float32)
         flat = observation.reshape(-1, observation.shape[-1])
-        (command,) = self._session.run([OUTPUT], {INPUT: flat})
+        try:
+            (command,) = self._session.run([OUTPUT], {INPUT: flat})
+        except _refusals() as error:
+            raise InputError(f"the ONNX policy cannot be run: {_reason(error)}") from error
+        if command.shape != (len(flat), ACTION_SIZE):
+            raise InputError(f"the ONNX policy answers {len(flat)} rows with {command.shape}")
         return command.reshape(*observation.shape[:-1], ACTION_SIZE)
 
 
@@ -107,16 +116,22 @@ def _reason(error: Exception) -> str:
 
 def _session(content: bytes, path: object) -> Any:
     import onnxruntime
-    from onnxruntime.capi import onnxruntime_pybind11_state  # type: ignore[attr-defined]
-
-    refusals: Any = onnxruntime_pybind11_state
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 4  # its complaints come as exceptions; nothing on the terminal
     try:
         return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
-    except (
+    except _refusals() as error:
+        raise InputError(f"{path} cannot be run by onnxruntime: {_reason(error)}") from error
+
+
+def _refusals() -> tuple[type[Exception], ...]:
+    """Return what onnxruntime raises over a model that it cannot load or run."""
+    from onnxruntime.capi import onnxruntime_pybind11_state  # type: ignore[attr-defined]
+
+    refusals: Any = onnxruntime_pybind11_state
+    return (
         refusals.EPFail,
         refusals.Fail,
         refusals.InvalidArgument,
@@ -127,8 +142,7 @@ def _session(content: bytes, path: object) -> Any:
         refusals.RuntimeException,
         RuntimeError,
         UnicodeDecodeError,
-    ) as error:
-        raise InputError(f"{path} cannot be run by onnxruntime: {_reason(error)}") from error
+    )
 
 
 class OnnxLeas:

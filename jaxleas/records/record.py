@@ -93,7 +93,7 @@ def read_record(path: str | Path) -> RunRecord:
             found |= read(path)
         except InputError as error:
             problems.append(str(error))
-        except (KeyError, TypeError, ValueError, AttributeError, OSError) as error:
+        except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError, OSError) as error:
             problems.append(f"{path}: {read.__name__[1:]} cannot be understood: {error!r}")
     done = found.get("steps", 0) >= (found.get("total") or float("inf"))
     finished = done and (path / "policy.npz").is_file()
@@ -128,8 +128,18 @@ def _config(path: Path) -> dict[str, Any]:
     if crushed := next((key for key in stated if any(k.startswith(f"{key}.") for k in usual)), ""):
         raise InputError(f"{path / 'config.yaml'}: {crushed} should hold `key: value` pairs")
     config = usual | stated
-    batch = int(config["ppo.environments"]) * int(config["ppo.unroll"])
-    return {"config": config, "total": -(-int(config["ppo.steps"]) // batch) * batch}
+    robots, unroll, steps = (
+        _count(path, config, f"ppo.{name}") for name in ("environments", "unroll", "steps")
+    )
+    batch = robots * unroll
+    return {"config": config, "total": -(-steps // batch) * batch}
+
+
+def _count(path: Path, config: Mapping[str, Any], name: str) -> int:
+    value = config[name]
+    if type(value) is not int or value < 1:
+        raise InputError(f"{path / 'config.yaml'}: {name} is {value!r:.40}, which is no count")
+    return value
 
 
 def _provenance(path: Path) -> dict[str, Any]:

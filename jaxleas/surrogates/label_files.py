@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field
 
-from jaxleas.files import read_json, require_version
+from jaxleas.files import is_file, read_json, require_version, typed
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain.atlas import Atlas, make_atlas
@@ -156,12 +156,7 @@ def _read(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(f"{path} is no verdict file: it needs an object")
     require_version(content, VERSION, path)
-    try:
-        _VerdictFile.model_validate(content, strict=True)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"]))
-        raise InputError(f"{path} is no verdict file: {key}: {first['msg']}") from error
+    typed(_VerdictFile, content, f"{path} is no verdict file")
     return content
 
 
@@ -191,7 +186,7 @@ class _Finder:
         changed = None
         for place in self.places:
             path = place / name
-            if path.is_file():
+            if is_file(path):
                 if hashlib.sha256(path.read_bytes()).hexdigest() == fingerprint:
                     self.found[fingerprint] = path
                     return path
@@ -199,6 +194,6 @@ class _Finder:
         if changed is not None:
             raise InputError(f"{changed} is not the file that was judged: its content has changed")
         raise InputError(
-            f"{name}, which was judged, is nowhere in {', '.join(map(str, self.places))}: name its"
-            " folder with --where"
+            f"{name:.200}, which was judged, is nowhere in {', '.join(map(str, self.places))}: name"
+            " its folder with --where"
         )

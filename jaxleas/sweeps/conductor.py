@@ -13,11 +13,11 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from jaxleas.files import read_json, write_json, write_text
+from jaxleas.files import write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import Objective
 from jaxleas.sweeps.folder import SweepFolder
-from jaxleas.sweeps.job import Outcome, outcome_file, stop_file, write_job
+from jaxleas.sweeps.job import Outcome, outcome_file, read_job, stop_file, write_job
 from jaxleas.sweeps.objectives import learning_curve
 from jaxleas.sweeps.open_trial import OpenTrial, result_of
 from jaxleas.sweeps.results import TrialResult, write_results
@@ -157,7 +157,7 @@ class Conductor:
     def _know_batches(self) -> None:
         """Find the batches that were begun before."""
         for job in sorted(self.folder.batch(0).parent.glob("[0-9]*.json")):
-            runs = [Path(each["run"]) for each in read_json(job)["trainings"]]
+            runs = read_job(job).runs
             self._batches[job] = sorted({int(run.parent.name) for run in runs})
 
     def _write_job(self, job: Path, trainings: Sequence[tuple[OpenTrial, int]]) -> None:
@@ -175,7 +175,7 @@ class Conductor:
         for job, words in self.runner.ended():
             self._flying.discard(job)
             changed = True
-            runs = [Path(each["run"]) for each in read_json(job)["trainings"]]
+            runs = read_job(job).runs
             if all(outcome_file(run).is_file() for run in runs):
                 continue
             if self._dies_in_vain(job, runs):

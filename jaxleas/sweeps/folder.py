@@ -10,11 +10,11 @@ report.html                 pictures
 lock                        held while a process conducts the sweep
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from uuid import uuid4
 
-from jaxleas.files import FolderLock, read_json, write_json, write_text
+from jaxleas.files import FolderLock, read_typed, require_version, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
 from jaxleas.training.config import RunConfig
@@ -23,6 +23,13 @@ from jaxleas.types.errors import InputError
 
 VERSION = 1
 _BEGINNINGS = {"lock", "sweep.yaml", "base.yaml"}
+
+
+@dataclass(frozen=True)
+class _Record:
+    name: str
+    owner: str
+    version: int = VERSION
 
 
 @dataclass(frozen=True)
@@ -75,12 +82,11 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
         if not known.is_file():
             write_text(path / "sweep.yaml", to_yaml(sweep.config))
             write_text(path / "base.yaml", to_yaml(sweep.base))
-            write_json(known, {"version": VERSION, "name": sweep.name, "owner": uuid4().hex})
-        record = read_json(known)
-        if not isinstance(record, dict) or record.get("version") != VERSION:
-            raise InputError(f"{known} is of another version; this one reads {VERSION}")
+            write_json(known, asdict(_Record(sweep.name, uuid4().hex)))
+        record = read_typed(_Record, known, "record of a sweep")
+        require_version(asdict(record), VERSION, known)
         _require_same(path, sweep)
-        return SweepFolder(path, record["owner"], lock)
+        return SweepFolder(path, record.owner, lock)
     except BaseException:
         lock.close()
         raise

@@ -11,9 +11,9 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from jaxleas.files import read_json, write_json
+from jaxleas.files import parse_json, read_typed, typed, write_json
 from jaxleas.types.errors import InputError, JaxleasError
 
 LIFELINE = "--lifeline"
@@ -37,6 +37,39 @@ class Outcome:
     seconds: float = 0.0
 
 
+@dataclass(frozen=True)
+class Training:
+    """One training of a job.
+
+    Attributes:
+        run: its run folder, absolute.
+        config: its configuration, as JSON.
+    """
+
+    run: str
+    config: str
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a job's file holds.
+
+    Attributes:
+        trainings: to be done; several as one population.
+        objectives: to be measured, as plain JSON.
+        version: of the file.
+    """
+
+    trainings: list[Training]
+    objectives: list[dict[str, Any]]
+    version: Literal[1] = 1
+
+    @property
+    def runs(self) -> list[Path]:
+        """Run folders of the trainings."""
+        return [Path(each.run) for each in self.trainings]
+
+
 class _PrunedError(JaxleasError):
     """The sweep has seen enough of this learning curve."""
 
@@ -52,14 +85,15 @@ def stop_file(run: Path) -> Path:
 
 
 def read_outcome(run: Path) -> Outcome | None:
-    """Return a training's outcome; None while it has none."""
+    """Return a training's outcome; None while it has none.
+
+    Raises:
+        InputError: its file is none.
+    """
     path = outcome_file(run)
     if not path.is_file():
         return None
-    try:
-        return Outcome(**read_json(path))
-    except TypeError as error:
-        raise InputError(f"{path} is no outcome of a training: {error}") from error
+    return read_typed(Outcome, path, "outcome of a training")
 
 
 def write_job(path: Path, runs: Sequence[Path], configs: Sequence[str], objectives: Any) -> None:
@@ -71,10 +105,17 @@ def write_job(path: Path, runs: Sequence[Path], configs: Sequence[str], objectiv
         configs: of the trainings, as JSON.
         objectives: to be measured, as plain JSON.
     """
-    trainings = [
-        {"run": str(run), "config": config} for run, config in zip(runs, configs, strict=True)
-    ]
-    write_json(path, {"version": 1, "trainings": trainings, "objectives": objectives})
+    pairs = zip(map(str, runs), configs, strict=True)
+    write_json(path, asdict(Job([Training(*each) for each in pairs], objectives)))
+
+
+def read_job(path: str | Path) -> Job:
+    """Read a job.
+
+    Raises:
+        InputError: the file is none.
+    """
+    return read_typed(Job, path, "job of a sweep")
 
 
 def do_job(path: str | Path) -> None:
@@ -83,17 +124,14 @@ def do_job(path: str | Path) -> None:
     Raises:
         InterruptedRunError: a signal asked to stop; everything done is saved.
     """
-    from pydantic import TypeAdapter
-
     from jaxleas.sweeps.config import Objective
     from jaxleas.training.config import RunConfig
 
-    job = read_json(path)
-    runs = [Path(each["run"]) for each in job["trainings"]]
-    configs = [
-        RunConfig.model_validate_json(each["config"], strict=True) for each in job["trainings"]
-    ]
-    objectives = TypeAdapter(list[Objective]).validate_python(job["objectives"])
+    job = read_job(path)
+    runs = job.runs
+    what = f"{path} is no job of a sweep"
+    configs = [typed(RunConfig, parse_json(each.config, what), what) for each in job.trainings]
+    objectives = typed(list[Objective], job.objectives, what)
     if all(outcome_file(run).is_file() for run in runs):
         return
     states = (
@@ -152,7 +190,9 @@ def _die_with_parent() -> None:
     """End this process when whoever started it is gone: their end of standard input closes."""
 
     def wait_for_the_end() -> None:
-        sys.stdin.buffer.read()
+        # Not through `sys.stdin`: its lock, held by this thread, would abort an orderly end.
+        while os.read(0, 4096):
+            pass
         os._exit(1)  # at once, as a kill would: everything that counts is on disk
 
     threading.Thread(target=wait_for_the_end, daemon=True).start()
@@ -163,7 +203,7 @@ def work(path: str | Path) -> None:
     from jaxleas.sweeps.devices import use_all_cores
     from jaxleas.training.compilation import keep_compiled_programs
 
-    if len(read_json(path)["trainings"]) > 1:
+    if len(read_job(path).runs) > 1:
         use_all_cores()
     keep_compiled_programs()
     patiently(do_job, path)

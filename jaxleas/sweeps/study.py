@@ -5,12 +5,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from jaxleas.files import read_json
+from jaxleas.files import read_json, require_version, typed
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.draw import draw
 from jaxleas.sweeps.folder import SweepFolder
 from jaxleas.sweeps.objectives import is_maximised
-from jaxleas.sweeps.results import TrialResult
+from jaxleas.sweeps.results import VERSION, TrialResult
 from jaxleas.sweeps.storage import open_storage, require_optuna
 from jaxleas.training.configuration import to_yaml
 from jaxleas.types.errors import InputError
@@ -119,9 +119,13 @@ class Study:
         self._study.tell(trial, values, state=state[result.state])
 
     def results(self) -> list[TrialResult]:
-        """Return the results of all machines, by number."""
+        """Return the results of all machines, by number.
+
+        Raises:
+            InputError: the storage holds what is none.
+        """
         told = [
-            TrialResult(**each.user_attrs[RESULT])
+            typed(TrialResult, each.user_attrs[RESULT], f"trial {each.number} of the storage")
             for each in self._study.get_trials(deepcopy=False)
             if each.state.is_finished() and RESULT in each.user_attrs
         ]
@@ -153,10 +157,10 @@ def read_results(folder: Path) -> list[TrialResult]:
     """
     path = Path(folder) / "results.json"
     content = read_json(path)
-    try:
-        return [TrialResult(**each) for each in content["trials"]]
-    except (KeyError, TypeError) as error:
-        raise InputError(f"{path} holds no results of a sweep: {error}") from error
+    trials = content.get("trials") if isinstance(content, dict) else None
+    if isinstance(content, dict):
+        require_version(content, VERSION, path)
+    return typed(list[TrialResult], trials, f"{path} holds no results of a sweep")
 
 
 def _sampler(optuna: Any, kind: str, seed: int) -> Any:

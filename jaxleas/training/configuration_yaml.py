@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from jaxleas.files import read_bytes
+from jaxleas.files import is_file, read_bytes
 from jaxleas.types.errors import InputError
 
 
@@ -88,8 +88,8 @@ def read_mapping(path: Path) -> dict[str, Any]:
     Raises:
         InputError: the file is missing, unreadable, not YAML, empty, or not a mapping.
     """
-    if not path.is_file():
-        raise InputError(f"the configuration file {path} does not exist")
+    if not is_file(path):
+        raise InputError(f"the configuration file {path!s:.300} does not exist")
     try:
         value = parse_yaml(read_bytes(path, 4 * MAX_CHARACTERS).decode("utf-8"))
     except ValueError as error:

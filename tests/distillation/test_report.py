@@ -80,8 +80,14 @@ def test_labels_are_counted(run):
     ("break_it", "sentence"),
     [
         (lambda run: (run / "rounds.json").unlink(), "no round is finished"),
-        (lambda run: write_json(run / "rounds.json", {"rounds": []}), "holds no `rounds`"),
-        (lambda run: write_json(run / "rounds.json", {"rounds": [{}]}), "a round lacks one of"),
+        (
+            lambda run: write_json(run / "rounds.json", {"rounds": []}),
+            "rounds: List should have",
+        ),
+        (
+            lambda run: write_json(run / "rounds.json", {"rounds": [{}]}),
+            "rounds.0.round: Field",
+        ),
         (lambda run: write_json(run / "evaluation" / "x.json", {}), "is not an evaluation"),
         (lambda run: write_json(run / "evaluation" / "figures.json", {}), "no figure file"),
     ],

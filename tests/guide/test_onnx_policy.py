@@ -138,3 +138,23 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path):
         read_onnx_policy(tmp_path / "none.onnx")
     with pytest.raises(InputError, match="folder"):
         read_onnx_policy(tmp_path)
+
+
+def test_a_graph_that_fails_only_when_it_is_run_is_a_sentence(tmp_path, content):
+    model = onnx.load_model_from_string(content)
+    # Another number of rows than went in: shapes are not known before it runs.
+    graph, command = model.graph, model.graph.output[0].name
+    for node in graph.node:
+        node.output[:] = ["first" if each == command else each for each in node.output]
+    graph.node.append(onnx.helper.make_node("Concat", ["first", "first"], [command], axis=0))
+    path = tmp_path / "twice.onnx"
+    path.write_bytes(model.SerializeToString())
+    with pytest.raises(InputError, match=r"answers 3 rows with \(6, 4\)"):
+        read_onnx_policy(path)(np.zeros((3, 144), np.float32))
+    graph.node[-1].attribute[0].i = 1  # five columns and four do not add
+    graph.node[-1].output[0] = "wide"
+    graph.node.append(onnx.helper.make_node("Add", ["first", "wide"], [command]))
+    path.write_bytes(model.SerializeToString())
+    with pytest.raises(InputError) as refusal:
+        read_onnx_policy(path)(np.zeros((3, 144), np.float32))
+    assert "\n" not in str(refusal.value)

@@ -55,7 +55,9 @@ def test_a_training_that_begins_is_running_not_damaged(tmp_path: Path) -> None:
     [
         ("config.yaml", "ppo: [1", "is not a usable YAML file"),
         ("config.yaml", "ppo: 3\nseed: [1]", "ppo should hold `key: value` pairs"),
-        ("config.yaml", "ppo: {steps: x}", "config cannot be understood"),
+        ("config.yaml", "ppo: {steps: x}", "ppo.steps is 'x', which is no count"),
+        ("config.yaml", "ppo: {unroll: 0}", "ppo.unroll is 0, which is no count"),
+        ("config.yaml", "ppo: {steps: 1e300}", "which is no count"),
         ("provenance.json", "[]", "provenance cannot be understood"),
         ("provenance.json", '{"git": 3, "command": [], "created": 1}', "cannot be understood"),
         ("metrics.jsonl", "nonsense\n", "line 1 is not valid JSON"),

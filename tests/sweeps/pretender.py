@@ -1,11 +1,13 @@
 """A worker that trains nothing: it writes what a training would, slowly, and may be killed.
 
-Each run folder gets a line in `diary` for every start and every end, so that tests can count.
+Each run folder gets a line in `diary` for every start and every end, so that tests can count. It
+needs Python's own library alone, so that a start takes no time.
 """
 
 import json
 import os
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -14,8 +16,6 @@ PAUSE = float(os.environ.get("PRETENDED_PAUSE", "0.05"))  # [s]
 
 
 def pretend(run: Path, config: dict) -> None:
-    from jaxleas.files import write_json
-
     run.mkdir(parents=True, exist_ok=True)
     note(run, "begun")
     rate = config["ppo"]["learning_rate"]
@@ -34,7 +34,9 @@ def pretend(run: Path, config: dict) -> None:
     if outcome["state"] == "done":
         outcome["values"] = {"held_out": min(1.0, 100.0 * rate), "steps_to_50%": 1.0 / rate}
     note(run, "ended")
-    write_json(run.with_name(f"{run.name}.json"), outcome)
+    half = run.with_name(f".{run.name}.json")
+    half.write_text(json.dumps(outcome))
+    half.replace(run.with_name(f"{run.name}.json"))
 
 
 def note(run: Path, word: str) -> None:
@@ -42,10 +44,17 @@ def note(run: Path, word: str) -> None:
         stream.write(f"{word}\n")
 
 
-if __name__ == "__main__":
-    from jaxleas.sweeps.job import LIFELINE, _die_with_parent
+def _die_with_parent() -> None:
+    def wait_for_the_end() -> None:
+        while os.read(0, 4096):
+            pass
+        os._exit(1)
 
-    if LIFELINE in sys.argv:
+    threading.Thread(target=wait_for_the_end, daemon=True).start()
+
+
+if __name__ == "__main__":
+    if "--lifeline" in sys.argv:
         _die_with_parent()
     for each in json.loads(Path(sys.argv[1]).read_text())["trainings"]:
         pretend(Path(each["run"]), json.loads(each["config"]))

@@ -9,19 +9,21 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
+from jaxleas.files import write_json
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
-from jaxleas.sweeps.job import patiently
+from jaxleas.sweeps.job import LIFELINE, Outcome, outcome_file, patiently, write_job
 from jaxleas.sweeps.results import TrialResult
 from jaxleas.sweeps.run_folders import hold_run_folder
 from jaxleas.sweeps.study import Study, read_results
 from jaxleas.types import InputError
 from tests.sweeps.files import write_sweep
-from tests.sweeps.pretended import conduct
+from tests.sweeps.pretended import conduct, start
 from tests.training.runs import ROOT, tiny
 
 pytest.importorskip("optuna", reason="the extra sweep is not installed")
@@ -30,16 +32,6 @@ SPACE = {
     "ppo.mirror": {"choices": [True, False]},
     "ppo.epochs": {"low": 1, "high": 3, "only_when": {"ppo.mirror": True}},
 }
-
-
-def start(path, out) -> subprocess.Popen:
-    return subprocess.Popen(
-        [sys.executable, "-m", "tests.sweeps.pretended", str(path), str(out)],
-        cwd=ROOT,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
 
 
 def told(out) -> int:
@@ -52,17 +44,18 @@ def told(out) -> int:
 def test_killed_three_times_it_ends_with_every_trial_once(tmp_path, vectorised):
     space = SPACE if not vectorised else {"ppo.learning_rate": SPACE["ppo.learning_rate"]}
     path = write_sweep(tmp_path, space=space, trials=20, parallel=2, vectorised=vectorised)
-    out, stream = tmp_path / "out", random.Random(7)
+    out, log, stream = tmp_path / "out", tmp_path / "log", random.Random(7)
     for kill in range(3):
-        process = start(path, out)
-        while told(out) < 4 * (kill + 1) and process.poll() is None:
-            time.sleep(0.02)
+        process = start(path, out, log)
+        while told(out) < 4 * (kill + 1) and process.is_alive():
+            time.sleep(0.01)
         time.sleep(stream.random() * 0.3)
-        assert process.poll() is None, process.communicate()
+        assert process.is_alive(), log.read_text()
         process.kill()
-        process.wait()
-    process = start(path, out)
-    assert process.wait(120) == 0, process.communicate()
+        process.join()
+    process = start(path, out, log)
+    process.join(120)
+    assert process.exitcode == 0, log.read_text()
     results = read_results(out)
     assert [each.number for each in results] == list(range(20))
     assert all(each.state == "done" and len(each.seeds) == 1 for each in results)
@@ -116,7 +109,7 @@ def test_a_worker_that_always_dies_fails_its_trial_alone(tmp_path):
 
 
 def test_the_pruner_ends_bad_trials_at_an_examination(tmp_path, monkeypatch):
-    monkeypatch.setenv("PRETENDED_PAUSE", "0.4")
+    monkeypatch.setenv("PRETENDED_PAUSE", "0.1")
     path = write_sweep(
         tmp_path, trials=5, pruner="median", startup_trials=2, seeds=[0, 1], sampler="random"
     )
@@ -134,34 +127,29 @@ def test_the_pruner_ends_bad_trials_at_an_examination(tmp_path, monkeypatch):
 def test_two_machines_share_a_study_and_do_each_trial_once(tmp_path):
     path = write_sweep(tmp_path, space=SPACE, trials=4)
     storage = f"sqlite:///{tmp_path}/study.db"
-    script = (
-        "import sys; from pathlib import Path; from tests.sweeps.pretended import *;"
-        f"conduct(Path(sys.argv[1]), Path(sys.argv[2]), PRETENDER, {storage!r})"
-    )
     sweep = open_sweep(path)
     folder = open_folder(tmp_path / "first", sweep)
     Study(sweep, folder, storage)
     folder.close()
-    others = [
-        subprocess.Popen(
-            [sys.executable, "-c", script, str(path), str(tmp_path / f"m{n}")], cwd=ROOT
-        )
-        for n in range(2)
-    ]
-    assert [each.wait(60) for each in others] == [0, 0]
+    logs = [tmp_path / f"log_{n}" for n in range(2)]
+    others = [start(path, tmp_path / f"m{n}", logs[n], storage) for n in range(2)]
+    for each, log in zip(others, logs, strict=True):
+        each.join(60)
+        assert each.exitcode == 0, log.read_text()
     runs = sorted(run.parent.name for run in tmp_path.glob("*/trials/*/seed_0"))
     assert runs == [f"{number:04d}" for number in range(4)]
 
 
 def test_ctrl_c_saves_and_says_how_to_go_on(tmp_path):
     path = write_sweep(tmp_path, space=SPACE, trials=30)
-    out = tmp_path / "out"
-    process = start(path, out)
-    while told(out) < 1 and process.poll() is None:
-        time.sleep(0.02)
+    out, log = tmp_path / "out", tmp_path / "log"
+    process = start(path, out, log)
+    while told(out) < 1 and process.is_alive():
+        time.sleep(0.01)
     os.kill(process.pid, signal.SIGINT)
-    _, words = process.communicate(timeout=60)
-    assert process.returncode == 130
+    process.join(60)
+    words = log.read_text()
+    assert process.exitcode == 130
     assert "the same command goes on" in words
     assert words.count("\n") == 1
     assert told(out) >= 1
@@ -245,3 +233,14 @@ def test_a_run_folder_whose_making_was_cut_short_is_made_again(tmp_path):
     (tmp_path / "other/thesis.tex").write_text("")
     with pytest.raises(InputError, match="not empty"):
         hold_run_folder(tmp_path / "other", tiny(), ["test"])
+
+
+def test_a_worker_ends_in_order_though_it_watches_its_conductor(tmp_path):
+    job, run = tmp_path / "job.json", tmp_path / "run"
+    write_job(job, [run], [tiny().model_dump_json()], [{"measure": "held_out"}])
+    write_json(outcome_file(run), asdict(Outcome("done", {"held_out": 0.5})))
+    command = [sys.executable, "-m", "jaxleas.sweeps.job", str(job), LIFELINE]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    with subprocess.Popen(command, cwd=ROOT, **pipes) as process:
+        assert process.stdout.read() == b""
+        assert process.wait(60) == 0

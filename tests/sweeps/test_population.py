@@ -113,8 +113,8 @@ def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkey
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     first = train_population(members, [whole / f"m{n}" for n in range(2)], whole)
     rounds = read_history(whole / "history.jsonl")
-    assert [row["step"] for row in rounds] == [640 * n for n in (2, 4, 6)]
-    assert all(row["parents"] in ([0, 0], [1, 1]) for row in rounds)
+    assert [row.step for row in rounds] == [640 * n for n in (2, 4, 6)]
+    assert all(row.parents in ([0, 0], [1, 1]) for row in rounds)
 
     calls = iter(range(100))
     monkeypatch.setattr(

@@ -5,24 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+from benchmarks.tiny import tiny_training
 from jaxleas.training.config import RunConfig
 
 ROOT = Path(__file__).resolve().parents[2]
 
-TINY = {
-    "terrain": {"arenas": 2, "generator": {"rows": 3, "columns": 3}},
-    "network": {"hidden": [16, 16]},
-    "ppo": {
-        "steps": 64 * 10 * 8,
-        "environments": 64,
-        "unroll": 10,
-        "minibatches": 2,
-        "epochs": 2,
-        "candidates": 64,
-    },
-    "held_out": {"every": 2, "starts": 16, "arenas": 1, "steps": 40},
-    "final": {"evaluate": False},
-}
+TINY = tiny_training()
 
 
 def tiny(**ppo) -> RunConfig:

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 import yaml
 
+from benchmarks.tiny import tiny_training
 from jaxleas.training.checkpoints import Checkpoints
 from jaxleas.training.loop import NonFiniteError, train
 from jaxleas.training.run_folder import RunFolder
 
-from .runs import TINY, start_training, tiny
+from .runs import start_training, tiny
 
 
 def checkpoint_arrays(folder):
@@ -86,8 +87,7 @@ def uninterrupted(tmp_path_factory):
     """A whole run, the folder of its compile cache, and its configuration file."""
     folder = tmp_path_factory.mktemp("runs")
     config = folder / "tiny.yaml"
-    steps = {"steps": 64 * 10 * 24}
-    config.write_text(yaml.safe_dump(TINY | {"ppo": TINY["ppo"] | steps}))
+    config.write_text(yaml.safe_dump(tiny_training(24)))
     process = start_training(str(config), "--run-dir", str(folder / "whole"), cache=folder / "xla")
     output, _ = process.communicate(timeout=300)
     assert process.returncode == 0, output
