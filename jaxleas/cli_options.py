@@ -11,8 +11,8 @@ from typing import Any
 def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -> None:
     """Add what `function` takes to `parser`.
 
-    The first parameter, if it may be given by position and has no default, or if all others are
-    keyword-only, becomes a positional argument; every other parameter an option `--its-name`,
+    The first parameter, if it may be given by position and has no default, becomes a positional
+    argument, and so does everything before a `*`; every other parameter an option `--its-name`,
     required if it has no default.
 
     Args:
@@ -25,18 +25,19 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
     helps = _argument_helps(text)
     hints = typing.get_type_hints(function)
     parameters = list(inspect.signature(function).parameters.values())
-    alone = all(each.kind is each.KEYWORD_ONLY for each in parameters[1:])
+    starred = any(each.kind is each.KEYWORD_ONLY for each in parameters)
     for index, parameter in enumerate(parameters):
         name = parameter.name
         options = _options_of_type(hints.get(name, str))
         required = parameter.default is parameter.empty
         options["help"] = helps.get(name, "").replace("%", "%%")
-        positional = index == 0 and parameter.kind is not parameter.KEYWORD_ONLY
+        positional = parameter.kind is not parameter.KEYWORD_ONLY and (starred or index == 0)
         if positional and required:
             parser.add_argument(name, metavar=name.upper(), **options)
             continue
-        if positional and alone:
-            options["help"] += f" [{parameter.default}]".replace("%", "%%")
+        if positional and starred:
+            if parameter.default is not None:
+                options["help"] += f" [{parameter.default}]".replace("%", "%%")
             options |= {"nargs": "?", "default": parameter.default}
             parser.add_argument(name, metavar=name.upper(), **options)
             continue

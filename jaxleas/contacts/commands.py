@@ -71,8 +71,8 @@ def plan(
 
 def check(
     plan: Path,
-    *,
     problem: Path | None = None,
+    *,
     guide: Path | None = None,
     scene: Path | None = None,
     query: int = 0,
@@ -95,7 +95,10 @@ def check(
         _check_postures(plan, read, problem, guide, scene, query, picture)
         return
     if problem is None:
-        raise InputError(f"{plan} is of the {read.planner} planner: say which --problem it answers")
+        raise InputError(
+            f"{plan} is of the {read.planner} planner: say which problem it answers:"
+            f" jaxleas check {plan} PROBLEM.json"
+        )
     asked = read_problem(problem)
     worst = certify(asked, read)
     if picture is not None:
@@ -127,7 +130,7 @@ def _check_postures(
     else:
         raise InputError(
             f"{path} is of the sampling planner: it is checked against its guide and scene, with"
-            " --guide GUIDE.npz --scene SCENE.json, or against --problem PROBLEM.json"
+            " --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"
         )
     certificate = certify_postures(read, followed, crossed)
     if picture is not None:

@@ -17,6 +17,7 @@ VERSION = 1
 NEEDED = ("robot", "model", "surfaces", "initial", "phases")
 KNOWN = (*NEEDED, "version", "polytopes", "foot_half_size", "parts")
 OF_A_PHASE = ("foot", "yaw", "candidates", "root")
+OTHER_ROTATIONS = ("rotation", "orientation", "quaternion", "roll", "pitch", "rpy", "R")
 MAX_COORDINATE = 1e6  # [m]
 MAX_PHASES = 10_000
 ON_SURFACE = 1e-3  # a foot further [m] from every surface stands on none
@@ -142,6 +143,7 @@ def _initial(where: str, content: Any) -> dict[str, FootPose]:
         here, pose = f"{where}: initial {foot}", content[foot]
         if not isinstance(pose, dict) or not {"position", "yaw"} <= pose.keys():
             raise InputError(f"{here} must be an object with position and yaw")
+        _refuse_other_rotations(here, pose)
         position = _vector(f"{here}: position", pose["position"])
         poses[foot] = FootPose(position, _yaw(here, pose["yaw"]))
     return poses
@@ -161,6 +163,7 @@ def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Pha
     if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
         raise InputError(f"{where} must be an object with foot, yaw and candidates")
     refuse_misspelt_keys(where, content, OF_A_PHASE)
+    _refuse_other_rotations(where, content)
     if content["foot"] not in FEET:
         raise InputError(f"{where}: foot must be 'LF' or 'RF', not {content['foot']!r:.60}")
     names = content["candidates"]
@@ -178,6 +181,16 @@ def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Pha
         candidates=tuple(dict.fromkeys(names)),
         root=None if root is None else _vector(f"{where}: root", root),
     )
+
+
+def _refuse_other_rotations(where: str, content: dict[str, Any]) -> None:
+    """Refuse a rotation that would have been let pass unread, as comments are."""
+    for key in OTHER_ROTATIONS:
+        if key in content:
+            raise InputError(
+                f"{where}: '{key}' is not read; rotations are about the vertical only: give yaw, in"
+                " radians"
+            )
 
 
 def _polytopes(where: str, content: dict[str, Any], model: str) -> StepPolytopes:

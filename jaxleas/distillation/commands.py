@@ -25,10 +25,11 @@ def distill(
     import os
 
     from jaxleas.distillation.config import DistillationConfig
-    from jaxleas.distillation.distill import Distillation
+    from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
     from jaxleas.distillation.opening import open_folder, train_start
     from jaxleas.distillation.table import table_of
+    from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
     from jaxleas.labels.own_planner import require_said
     from jaxleas.training.compilation import keep_compiled_programs
@@ -43,8 +44,8 @@ def distill(
     settled = open_folder(folder, asked, start)
     with FolderLock(folder.path, "the distillation", "give another --out"):
         run = train_start(folder, settled)
-        distillation = Distillation(settled, folder, str(run), processes or os.cpu_count() or 1)
-        results = distillation.run(_Teller())
+        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1)
+        results = run_rounds(place, _Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
     print(f"{folder.policy}: the best round's policy{beside}")

@@ -1,13 +1,11 @@
 """The table of a distillation's rounds, as text."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from jaxleas.distillation.distill import RoundResult
+from jaxleas.distillation.rounds import RoundResult
 
 
-def table_of(results: "Sequence[RoundResult]") -> str:
+def table_of(results: Sequence[RoundResult]) -> str:
     """Return the exact success of each round, cell by cell, in per cent."""
     names = list(results[0].cells)
     heads = ["round", "labels", "minutes", *names, "mean"]

@@ -3,10 +3,10 @@
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 from jaxleas.evaluation.learning_curves import COLOURS, DPI, series
+from jaxleas.evaluation.page import page_template
 from jaxleas.evaluation.table import align, cell_title, percent
 from jaxleas.records.comparison import Comparison, Score, apart
 from jaxleas.records.listing import as_json, as_text, cut, duration
@@ -140,12 +140,8 @@ def draw(comparison: Comparison) -> bytes:
 
 def to_html(comparison: Comparison) -> str:
     """Return the comparison as one HTML file that needs nothing else."""
-    from jinja2 import Environment, StrictUndefined
-
-    text = resources.files("jaxleas.records").joinpath(TEMPLATE).read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     picture = base64.b64encode(draw(comparison)).decode("ascii")
-    return environment.from_string(text).render(
+    return page_template("jaxleas.records", TEMPLATE).render(
         names=names_of(comparison), sections=sections(comparison), picture=picture
     )
 

@@ -1,8 +1,8 @@
 """A sweep's report: one HTML file that needs nothing else."""
 
 from collections.abc import Mapping, Sequence
-from importlib import resources
 
+from jaxleas.evaluation.page import page_template
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.charts import importance_bars, learning_curves, parallel_coordinates
 from jaxleas.sweeps.folder import SweepFolder
@@ -26,8 +26,6 @@ def report_html(
         importance: of the searched fields for the first objective, as shares.
         folder: of the sweep, with the run folders of the trials that ran here.
     """
-    import jinja2
-
     config = sweep.config
     front = best_of(results, config.objectives)
     total = sweep.base.ppo.updates * sweep.base.ppo.batch
@@ -38,11 +36,7 @@ def report_html(
     }
     best = [f"trial {each.number}, seed {seed}" for each in front for seed in config.seeds]
     first = config.objectives[0]
-    source = resources.files("jaxleas.sweeps").joinpath(TEMPLATE).read_text(encoding="utf-8")
-    template = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(
-        source
-    )
-    return template.render(
+    return page_template("jaxleas.sweeps", TEMPLATE).render(
         name=sweep.name,
         base=config.config,
         counts={s: sum(r.state == s for r in results) for s in ("done", "pruned", "failed")},

@@ -34,7 +34,7 @@ def test_plan_then_check(folder, capsys, planner: str) -> None:
     cli.run(f"plan good.json --planner {planner} --out plan.json --picture plan.png".split())
     assert f"{planner}: feasible, 4 phases" in capsys.readouterr().out
     assert (folder / "plan.png").stat().st_size > 5000
-    cli.run(["check", "plan.json", "--problem", "good.json"])
+    cli.run(["check", "plan.json", "good.json"])
     assert "plan.json is certified: 4 phases" in capsys.readouterr().out
     written = json.loads((folder / "plan.json").read_text())
     assert written["certificate"]["max_violation_m"] <= 1e-6
@@ -48,7 +48,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
     written["footholds"][2][2] += 0.01
     write_json("plan.json", written)
     with pytest.raises(NotCertifiedError, match=r"surface's plane, phase 2: 0.01 m") as caught:
-        cli.run(["check", "plan.json", "--problem", "good.json"])
+        cli.run(["check", "plan.json", "good.json"])
     assert caught.value.exit_code == 1
 
 
@@ -62,7 +62,7 @@ def test_an_infeasible_problem_is_an_answer(folder, capsys) -> None:
     assert plan.reason in text
     assert (folder / "why.png").stat().st_size > 5000
     with pytest.raises(InputError, match="is 'infeasible' and has no footholds"):
-        cli.run(["check", "plan.json", "--problem", "wide.json"])
+        cli.run(["check", "plan.json", "wide.json"])
 
 
 def test_contacts_from_guide_to_plan(folder, capsys) -> None:
@@ -71,7 +71,7 @@ def test_contacts_from_guide_to_plan(folder, capsys) -> None:
     assert "mip: feasible, 14 phases" in capsys.readouterr().out
     made = read_problem(folder / "made.json")
     assert len(made) == 14
-    cli.run(["check", "plan.json", "--problem", "made.json"])
+    cli.run(["check", "plan.json", "made.json"])
     assert (folder / "plan.svg").read_text().lstrip().startswith("<?xml")
 
 
@@ -86,7 +86,7 @@ def test_contacts_from_guide_to_plan(folder, capsys) -> None:
         ("plan good.json --out plan.json --planner sl1m --cost linear", "for the mip planner"),
         ("contacts guide.npz --scene good.json --out plan.json --every 0", "every 0"),
         ("contacts guide.npz --scene scene.json --out plan.json --query 3", "no path 3"),
-        ("check good.json --problem good.json", "is not a contact plan"),
+        ("check good.json good.json", "is not a contact plan"),
     ],
 )
 def test_a_mistake_writes_no_plan(folder, line: str, words: str) -> None:

@@ -64,7 +64,7 @@ def test_from_problem_to_plan_to_check(tmp_path, monkeypatch, capsys) -> None:
     assert (
         plan.postures[-1].configuration == len(guide_from_problem(read_problem("stairs.json"))) - 1
     )
-    run("check plan.json --problem stairs.json")
+    run("check plan.json stairs.json")
     assert "is certified" in capsys.readouterr().out
     with pytest.raises(InputError, match="--cost is for mip and sl1m"):
         run("plan stairs.json --planner sampling --out p.json --cost linear")

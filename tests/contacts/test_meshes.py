@@ -36,7 +36,7 @@ def test_from_mesh_to_checked_plan(shared, tmp_path, monkeypatch, mesh, guide, p
     cli.run([*line.split(), *more])
     plan = read_plan("plan.json")
     assert plan.feasible, plan.reason
-    asked = f"--guide guide.npz --scene {scene}" if planner == "sampling" else "--problem made.json"
+    asked = f"--guide guide.npz --scene {scene}" if planner == "sampling" else "made.json"
     cli.run(f"check plan.json {asked}".split())
 
 

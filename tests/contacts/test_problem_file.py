@@ -39,6 +39,8 @@ DART = [[0, 0, 0], [1, 0, 0], [0.3, 0.3, 0], [0, 1, 0]]
         (["phases", 1, "candidates"], ["start", "moon"], ["phase 1", "'moon' is no surface"]),
         (["phases", 2, "candidates"], [], ["phase 2 has no candidate surfaces"]),
         (["phases", 2, "foot"], "left", ["phase 2", "must be 'LF' or 'RF'", "'left'"]),
+        (["phases", 1, "rotation"], [[2, 0, 0], [0, 1, 0], [0, 0, 1]], ["phase 1: 'rotation' is"]),
+        (["initial", "LF", "orientation"], [0, 0, 0, 1], ["LF: 'orientation' is not", "vertical"]),
         (["phases", 2, "yaw"], 90.0, ["phase 2", "yaw 90 is beyond a full turn", "radians"]),
         (["phases", 2, "yaw"], [[1, 0], [0, 1]], ["phase 2", "one finite number of radians"]),
         (["phases", 2, "yaw"], math.nan, ["phase 2", "one finite number of radians"]),

@@ -1,0 +1,80 @@
+"""What every stage of a distillation works with: planner, policy's task, training terrain."""
+
+from functools import cached_property
+
+from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.distillation.labelling import Ground
+from jaxleas.distillation.practice import read_run
+from jaxleas.distillation.widening import widen, widen_policy
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
+from jaxleas.labels.settings import settings_from
+from jaxleas.surrogates import Identity
+from jaxleas.terrain.generator import generate_arena
+from jaxleas.training.policy import SteeringPolicy, read_policy
+from jaxleas.training.worlds import training_world
+
+POLICY_FILE = "policy.npz"
+
+
+class Workplace:
+    """A distillation's planner, task and terrain, and what its policy knew before.
+
+    Attributes:
+        config: of the distillation.
+        folder: it lives in.
+        settings: of the planner, resolved.
+        run_config: of the policy's training, seen by the layout it practises with.
+        learned: by the policy before.
+        env: its task.
+        workers: that ask the planner.
+        judge: the planner over them.
+    """
+
+    def __init__(
+        self, config: DistillationConfig, folder: DistillationFolder, start: str, processes: int
+    ):
+        """Prepare; nothing is computed yet.
+
+        Args:
+            config: of the distillation.
+            folder: to work in.
+            start: run folder of the policy to begin with.
+            processes: that ask the planner.
+
+        Raises:
+            InputError: the planner's parameters cannot be used, or there is no such run.
+        """
+        self.config, self.folder, self._start = config, folder, start
+        self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
+        self.run_config, self.learned = widen(*read_run(start), config.practice.observation)
+        self.env = SteeringEnv(self.run_config.env)
+        self.workers = ProcessWorkers(processes)
+        self.judge = Judge(config.planner, self.settings, workers=self.workers)
+
+    @cached_property
+    def policy(self) -> SteeringPolicy:
+        """The policy to begin with."""
+        return widen_policy(read_policy(f"{self._start}/{POLICY_FILE}"), self.env)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """The training terrain, made when first needed."""
+        terrain = self.run_config.terrain
+        seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
+        scenes = tuple(generate_arena(terrain.generator, seed).scene for seed in seeds)
+        return Ground(self.env, training_world(self.run_config), scenes)
+
+    @property
+    def identity(self) -> Identity:
+        """Whose stand-in the surrogates are."""
+        env = self.run_config.env
+        return Identity(
+            planner=self.config.planner,
+            parameters=self.settings.model_dump(mode="json"),
+            robot=env.robot,
+            observation=env.observation,
+            height_low=env.height_low,
+            height_high=env.height_high,
+        )
