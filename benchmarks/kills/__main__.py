@@ -47,17 +47,18 @@ def main() -> int:
             done = report | {"command": command, "seconds": round(time.monotonic() - begun)}
             if given.json:
                 write_json(given.json, done)
+        done["machine"] = this_machine()
+        if given.json:
+            write_json(given.json, done)
     print(json.dumps(done, indent=2))
     return 1 if done["failures"] else 0
 
 
 def _alone(kills: int, seed: int, folder: Path) -> Iterator[dict[str, Any]]:
     """Kill; yield a report after every process."""
-    # Compiled once, by the run that is not killed, or by whoever shares their cache with us.
-    os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder / "xla"))
-    os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
     os.environ["CI"] = "true"  # plain progress lines
-    _import_everything()
+    # Compiled once, by the run that is not killed, or by whoever shares their cache with us.
+    _import_everything(os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder / "xla")))
     from benchmarks.kills.killing import Killer
 
     killer = Killer(folder, random.Random(seed))
@@ -103,8 +104,20 @@ def _sum(reports: list[dict[str, Any]]) -> dict[str, Any]:
     return total
 
 
-def _import_everything() -> None:
+def this_machine() -> str:
+    """Return what it was done on; asks JAX for devices, so only when nothing is forked any more."""
+    from benchmarks import measurements
+
+    return measurements.this_machine()
+
+
+def _import_everything(cache: str) -> None:
+    import jax
     import tensorboardX  # noqa: F401
+
+    # Whoever imported it first may have been earlier than the variables.
+    jax.config.update("jax_compilation_cache_dir", cache)
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
 
     import jaxleas.training.configuration
     import jaxleas.training.loop  # noqa: F401

@@ -8,6 +8,7 @@ the hungriest. Ends with exit code 1 if anything broke.
 import argparse
 import json
 import os
+import resource
 import select
 import subprocess
 import sys
@@ -15,6 +16,8 @@ import time
 from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
+
+from benchmarks.measurements import this_machine
 
 SILENCE = 90.0  # without a word a process is taken to hang [s]
 A_PROCESS = 20_000  # inputs, then a fresh one: what readers keep (compiled programs) goes with it
@@ -37,6 +40,8 @@ def main() -> int:
     report = tally.report() | {
         "command": f"python -m benchmarks.strangers --inputs {given.inputs} --seed {given.seed}",
         "seconds": round(time.monotonic() - begun),
+        "processor_seconds": round(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime),
+        "machine": this_machine(),
     }
     text = json.dumps(report, indent=2)
     print(text)

@@ -1,8 +1,9 @@
 """What a distillation is told: which planner, how many rounds, and what is done in each."""
 
+import re
 from typing import Annotated, Literal
 
-from pydantic import Field, JsonValue
+from pydantic import AfterValidator, Field, JsonValue
 
 from jaxleas.surrogates.fit import FitSettings
 from jaxleas.training.config import RunConfig
@@ -14,6 +15,14 @@ NonNegative = Annotated[float, Field(ge=0.0)]
 
 Observation = Literal["thesis144", "thesis145", "icra81"]
 RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]
+PLANNERS = ("sampling", "mip", "sl1m")
+
+
+def _planner(name: str) -> str:
+    """Refuse what cannot be a planner; whether there is one of that name is asked later."""
+    if name not in PLANNERS and not re.fullmatch(r"[\w.]+:\w+", name):
+        raise ValueError(f"it should be {', '.join(PLANNERS)}, or MODULE:CLASS of your own")
+    return name
 
 
 class CollectConfig(Strict):
@@ -77,7 +86,7 @@ class DistillationConfig(Strict):
 
     mode: Literal["surrogate", "faithful"] = "surrogate"
     """Who ends episodes in practice: a surrogate of the planner, or the exact planner itself."""
-    planner: Annotated[str, Field(pattern=r"^(sampling|mip|sl1m|[\w.]+:\w+)$")] = "sampling"
+    planner: Annotated[str, AfterValidator(_planner)] = "sampling"
     """sampling, mip, sl1m, or MODULE:CLASS of one's own, which the command line must name, too."""
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
-import yaml
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, ValidationError
 
 from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
@@ -12,6 +11,7 @@ from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sl1m import MAX_COMBINATIONS
 from jaxleas.contacts.slack_weights import SlackWeights
 from jaxleas.labels.own_planner import OwnPlanner, is_own, load_planner
+from jaxleas.training.configuration_yaml import parse_yaml
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -98,10 +98,12 @@ def settings_from(planner: str, **given: Any) -> PlannerSettings:
     unknown = next((name for name in chosen if name not in kind.model_fields), None)
     if unknown is not None:
         owners = [name for name, each in SETTINGS.items() if unknown in each.model_fields]
-        raise InputError(
-            f"--{unknown.replace('_', '-')} is for the planner {' and '.join(owners) or 'of none'},"
-            f" not for {planner}"
-        )
+        if owners:
+            option = unknown.replace("_", "-")
+            words = f"--{option} is for the planner {' and '.join(owners)}, not for {planner}"
+        else:
+            words = f"{planner} has no setting {unknown}; it has {', '.join(kind.model_fields)}"
+        raise InputError(words)
     try:
         return kind(**chosen)
     except ValidationError as error:
@@ -127,7 +129,7 @@ def settings_of(words: Sequence[str]) -> dict[str, Any]:
         if not (name.isidentifier() and equals):
             raise InputError(f"--parameters {word}: they look like longest_step=0.3")
         try:
-            settings[name] = yaml.safe_load(text)
-        except yaml.YAMLError as error:
+            settings[name] = parse_yaml(text)
+        except ValueError as error:
             raise InputError(f"--parameters {word}: {text} is not YAML") from error
     return settings

@@ -54,7 +54,8 @@ def runs(
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise InputError(f"the folder {folder} does not exist: give one that holds runs")
+        what = f"{folder} is a file" if folder.exists() else f"the folder {folder} does not exist"
+        raise InputError(f"{what}: give one that holds runs")
     wanted = _conditions(where or ())
     found = [read_record(path) for path in find_runs(folder)]
     shown = [
@@ -113,7 +114,8 @@ _MISSING = object()
 
 def _require_run(path: Path) -> RunRecord:
     if not path.is_dir():
-        raise InputError(f"the run folder {path} does not exist")
+        what = "is a file" if path.exists() else "does not exist"
+        raise InputError(f"the run folder {path} {what}")
     if find_runs(path) != [path]:
         raise InputError(f"{path} is not a run folder: it holds no provenance.json")
     record = read_record(path)

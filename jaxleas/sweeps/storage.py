@@ -50,6 +50,8 @@ def open_storage(where: str | None, journal: Path) -> Any:
                 " sqlite:///FILE.db, or a journal file FILE.log"
             )
         return _journal(optuna, Path(where))
+    if where.startswith("sqlite") and where.partition("://")[2] in ("", "/", "/:memory:"):
+        raise InputError(f"--storage {where} forgets all when it ends: give sqlite:///FILE.db")
     try:
         return optuna.storages.RDBStorage(where)
     except ImportError as error:

@@ -151,6 +151,15 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
     if error["type"] == "extra_forbidden":
         names = [field.name for field in fields_of(model)]
         return f"{source}: there is no {name}{hint(name, names)}"
+    if error["type"].startswith("union_tag"):  # which of several kinds of section it is
+        tag = f"{name}.{error['ctx']['discriminator'].strip(chr(39))}"
+        kinds = error["ctx"].get("expected_tags")
+        if kinds is None:
+            return f"{source}: {tag} is missing and has no default"
+        return f"{source}: {tag} is {error['ctx']['tag']!r}, but it should be one of {kinds}"
+    if error["type"] == "too_short":
+        least = error["ctx"]["min_length"]
+        return f"{source}: {name} is {error['input']!r}, but it should hold at least {least}"
     if error["type"] == "missing":
         return f"{source}: {name} is missing and has no default"
     if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once

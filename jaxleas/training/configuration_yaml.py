@@ -1,5 +1,6 @@
 """YAML as it should be: no repeated keys, `3e-4` is a number, and nothing but plain values."""
 
+import os
 import re
 from collections.abc import Hashable
 from pathlib import Path
@@ -89,7 +90,8 @@ def read_mapping(path: Path) -> dict[str, Any]:
         InputError: the file is missing, unreadable, not YAML, empty, or not a mapping.
     """
     if not is_file(path):
-        raise InputError(f"the configuration file {path!s:.300} does not exist")
+        what = "is a folder" if os.path.isdir(path) else "does not exist"
+        raise InputError(f"the configuration file {path!s:.300} {what}")
     try:
         value = parse_yaml(read_bytes(path, 4 * MAX_CHARACTERS).decode("utf-8"))
     except ValueError as error:

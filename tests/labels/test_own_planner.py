@@ -169,7 +169,7 @@ def test_a_planner_that_is_none_is_refused(here, name: str, message: str) -> Non
     ("given", "message"),
     [
         (["furthest=far"], "--furthest far: input should be a valid number"),
-        (["nearest=1"], "--nearest is for the planner of none"),
+        (["nearest=1"], "has no setting nearest; it has "),
         (["furthest"], "they look like longest_step=0.3"),
         (["furthest=[1"], "is not YAML"),
     ],

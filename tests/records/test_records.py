@@ -138,6 +138,8 @@ def test_sorted_and_chosen(tmp_path: Path, capsys) -> None:
     ("arguments", "message"),
     [
         (["runs", "nowhere"], "the folder nowhere does not exist"),
+        (["runs", __file__], "is a file: give one that holds runs"),
+        (["compare", __file__, __file__], "is a file"),
         (["runs", ".", "--where", "ppo.discont=1"], "perhaps you meant ppo.discount"),
         (["runs", ".", "--where", "seed"], "conditions look like ppo.discount=0.99"),
         (["runs", ".", "--where", "seed=[1"], "is not YAML"),

@@ -63,7 +63,12 @@ LINEAR = {"low": 0.1, "high": 0.2}
         ),
         ({"set": {"ppo.stepz": 3}}, "set: there is no ppo.stepz"),
         ({"set": {"ppo.steps": -3}}, "ppo.steps is -3"),
-        ({"objectives": [{"measure": "speed"}]}, "'held_out'"),
+        (
+            {"objectives": [{"measure": "speed"}]},
+            "objectives.0.measure is 'speed', but it should be one of 'held_out', ",
+        ),
+        ({"objectives": [{"success": 0.5}]}, "objectives.0.measure is missing"),
+        ({"objectives": [{"measure": "exact", "suites": []}]}, "should hold at least 1"),
         ({"objectives": []}, "objectives is empty"),
         (
             {"objectives": [{"measure": "held_out"}, {"measure": "held_out"}]},
@@ -71,7 +76,10 @@ LINEAR = {"low": 0.1, "high": 0.2}
         ),
         ({"objectives": [{"measure": "steps_to_success", "success": 1.5}]}, "success is 1.5"),
         ({"objectives": [{"measure": "exact", "suites": ["stairs"]}]}, "objectives.0"),
-        ({"objectives": [{"measure": "exact", "parameters": {"sample": 3}}]}, "objectives.0"),
+        (
+            {"objectives": [{"measure": "exact", "parameters": {"sample": 3}}]},
+            "has no setting sample;",
+        ),
         (
             {
                 "pruner": "median",

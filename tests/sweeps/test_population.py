@@ -1,15 +1,18 @@
 """Members of one program are what they would be alone, and go on after any interruption."""
 
+import functools
 import json
+from unittest.mock import patch
 
 import jax
 import numpy as np
 import pytest
 
+from jaxleas.sweeps import population_loop
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
 from jaxleas.sweeps.history import read_history
-from jaxleas.sweeps.population import require_one_program
+from jaxleas.sweeps.population import Population, require_one_program
 from jaxleas.sweeps.population_config import Members, open_population
 from jaxleas.sweeps.population_folder import hold_population
 from jaxleas.sweeps.population_loop import train_population
@@ -40,6 +43,16 @@ OTHER = {
     "env.reward.alive": 0.3,
     "env.reward.failure": 1.5,
 }
+
+
+# Everybody's members here: one compiled program does for all.
+CONFIGS = (tiny(), with_values(tiny(), OTHER, "test"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _compiled_once():
+    with patch.object(population_loop, "Population", functools.cache(Population)):
+        yield
 
 
 def rows_of(run):
@@ -83,11 +96,10 @@ def test_a_populations_folder_is_one_populations(tmp_path):
 @pytest.mark.slow
 @pytest.mark.usefixtures("brax_ranks")
 def test_a_member_is_what_it_would_be_alone(tmp_path):
-    configs = (tiny(), with_values(tiny(), OTHER, "test"))
     runs = [tmp_path / "member_00", tmp_path / "member_01"]
-    train_population(Members(configs, ({}, {})), runs, tmp_path)
+    train_population(Members(CONFIGS, ({}, {})), runs, tmp_path)
     with RunFolder.create(tmp_path / "alone", "seed: 3\n", ["test"]) as run:
-        train(configs[1], run)
+        train(CONFIGS[1], run)
     mine, alone = rows_of(runs[1]), rows_of(tmp_path / "alone")
     assert [row.keys() for row in mine] == [row.keys() for row in alone]
     for name in alone[0]:  # the first two updates: later ones magnify rounding
@@ -105,11 +117,8 @@ def test_a_member_is_what_it_would_be_alone(tmp_path):
 @pytest.mark.usefixtures("brax_ranks")
 def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkeypatch):
     space = {"ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True)}
-    values = tuple({"ppo.learning_rate": rate} for rate in (1e-3, 5e-3))
-    configs = tuple(
-        with_values(tiny(), {**each, "seed": seed}, "test") for seed, each in enumerate(values)
-    )
-    members = Members(configs, values, space, EvolutionConfig(every=1), seed=5)
+    values = tuple({"ppo.learning_rate": each.ppo.learning_rate} for each in CONFIGS)
+    members = Members(CONFIGS, values, space, EvolutionConfig(every=1), seed=5)
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     first = train_population(members, [whole / f"m{n}" for n in range(2)], whole)
     rounds = read_history(whole / "history.jsonl")

@@ -65,6 +65,7 @@ def test_a_study_of_another_sweep_is_refused(tmp_path):
         ("grpc://localhost", "a storage proxy is grpc://HOST:PORT"),
         ("grpc://localhost:{port}", "nobody answered within"),
         ("sqlite:////nowhere/at/all.db", "cannot be reached"),
+        ("sqlite://", "forgets all when it ends"),
         ("oracel://host/db", "--storage oracel://host/db"),
         ("/nowhere/at/all.log", "/nowhere/at/all.log"),
     ],
