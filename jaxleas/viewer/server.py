@@ -97,8 +97,8 @@ def _require_free(host: str, port: int) -> None:
         if error.errno == errno.EADDRINUSE:
             raise InputError(_in_use(host, port)) from error
         raise InputError(
-            f"cannot listen on {host}, port {port}: {error.strerror or error}; --host 127.0.0.1 is"
-            " usual, with a --port above 1023"
+            f"cannot listen on {host!r}, port {port}: {error.strerror or error}; --host 127.0.0.1"
+            " is usual, with a --port above 1023"
         ) from error
 
 
