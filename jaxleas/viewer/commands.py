@@ -157,13 +157,13 @@ def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list
 
 
 def _announce(server: "ViserServer", browser: bool) -> None:
-    from jaxleas.viewer.server import address_of, open_browser
+    from jaxleas.viewer.server import address_of, from_elsewhere, open_browser
 
-    address, port = address_of(server), server.get_port()
+    address = address_of(server)
     opened = browser and open_browser(address)
     print(
-        f"{address} {'is open in your browser' if opened else 'shows it in any browser'}; from"
-        f" elsewhere forward the port (ssh -L {port}:127.0.0.1:{port} THIS_MACHINE); Ctrl-C ends",
+        f"{address} {'is open in your browser' if opened else 'shows it in any browser'};"
+        f" {from_elsewhere(server.get_host(), server.get_port())}; Ctrl-C ends",
         flush=True,
     )
 

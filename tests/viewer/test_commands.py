@@ -16,7 +16,7 @@ from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from jaxleas.viewer import server as viewer_server
 from jaxleas.viewer.commands import _names, view
-from jaxleas.viewer.server import open_browser, serving
+from jaxleas.viewer.server import from_elsewhere, open_browser, serving
 from tests.guide.walkers import flat_map, random_policy
 from tests.viewer.test_clips import straight
 
@@ -106,8 +106,9 @@ def test_a_port_in_use_is_refused(terrain):
         port = other.getsockname()[1]
         with pytest.raises(InputError, match=f"port {port} of 127.0.0.1 is in use"):
             view(terrain, port=port)
-    with pytest.raises(InputError, match="cannot listen on"):
-        view(terrain, host="192.0.2.1")  # an address for documentation: nobody's
+    for host in ("192.0.2.1", "a" * 80):  # an address for documentation, nobody's; and no name
+        with pytest.raises(InputError, match="cannot listen on"):
+            view(terrain, host=host)
 
 
 def test_without_viser_it_says_what_to_install(terrain, monkeypatch):
@@ -153,6 +154,20 @@ def test_without_a_display_no_browser_is_opened(monkeypatch):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(viewer_server.webbrowser, "open", lambda _: pytest.fail("opened"))
     assert not open_browser("http://127.0.0.1:8080")
+
+
+@pytest.mark.parametrize(
+    ("host", "says"),
+    [
+        ("127.0.0.1", "ssh -L 80:127.0.0.1:80 "),
+        ("localhost", "ssh -L 80:localhost:80 "),
+        ("::1", "ssh -L 80:[::1]:80 "),
+        ("0.0.0.0", "no password"),
+        ("192.0.2.1", "no password"),
+    ],
+)
+def test_it_says_how_other_machines_reach_it(host, says):
+    assert says in from_elsewhere(host, 80)
 
 
 def test_it_listens_on_the_loopback_interface_alone():
