@@ -59,12 +59,14 @@ def served(folder: Path) -> Iterator[str]:
             thread.join()
 
 
-def wait_until(holds: Callable[[], Any], what: str, patience: float = PATIENCE) -> Any:
-    """Return what `holds` does once it is true."""
+def wait_until(
+    holds: Callable[[], Any], what: str, patience: float = PATIENCE, often: float = 0.1
+) -> Any:
+    """Return what `holds` does once it is true, asked as often as that [s]."""
     deadline = time.monotonic() + patience
     while time.monotonic() < deadline:
         answer = holds()
         if answer:
             return answer
-        time.sleep(0.1)
+        time.sleep(often)
     pytest.fail(f"{what}: not within {patience:g} s")

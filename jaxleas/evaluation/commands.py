@@ -15,7 +15,7 @@ from jaxleas.evaluation.examination import (
 )
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.refusal import load_refusal
-from jaxleas.evaluation.result_file import Evaluation, write_evaluation
+from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
 from jaxleas.evaluation.scene_pictures import draw_side_by_side
 from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
@@ -82,6 +82,10 @@ def evaluate(
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
     further = parse_policies(_words(policies) or ())
+    if json is not None and json.exists():
+        _require_evaluation(json)
+    if pictures is not None and pictures.exists() and not pictures.is_dir():
+        raise InputError(f"--pictures {pictures} is a file; give a folder, new or there already")
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
     refusal = load_refusal(surrogate, threshold, names)
@@ -127,6 +131,16 @@ def evaluate(
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation
+
+
+def _require_evaluation(file: Path) -> None:
+    """Refuse to write over what is no evaluation: a scene named by mistake, say."""
+    try:
+        read_evaluation(file)
+    except InputError as error:
+        raise InputError(
+            f"--json {file} is there and holds no evaluation ({error}); remove it, or give another"
+        ) from error
 
 
 def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:

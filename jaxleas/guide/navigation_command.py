@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from jaxleas.guide.steering_method import SteeringMethod
     from jaxleas.terrain.scene import Scene
 
+FARTHEST = 1e6  # of a start or a goal [m]
+
 
 def navigate(
     *,
@@ -71,6 +73,8 @@ def navigate(
     start, yaw = _place("--from", from_, may_turn=True)
     goal, _ = _place("--to", to, may_turn=False)
     Budget(limit, connections)  # refused before anything is loaded
+    if seed < 0:
+        raise InputError(f"--seed {seed} must not be negative")
     if out.suffix != ".npz":
         raise InputError(f"--out {out}: guide paths are written as .npz")
     if picture is not None:
@@ -100,7 +104,8 @@ def navigate(
     _write(out, found)
     if picture is not None:
         draw_navigation(picture, ground, found.path, found.waypoints, goal)
-    print(_sentence(out, found, goal, "" if verdict is None else f"; {verdict}"))
+    exactly = "" if verdict is None else f"; {verdict}"
+    print(_sentence(out, found, goal, exactly, searched=planner != "none"))
 
 
 def make_navigator(
@@ -172,6 +177,10 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
     wanted = "x,y or x,y,yaw" if may_turn else "x,y"
     if len(numbers) not in ((2, 3) if may_turn else (2,)) or not all(map(math.isfinite, numbers)):
         raise InputError(f"{option} {text!r} is not {wanted}: give finite numbers in metres")
+    if max(map(abs, numbers[:2])) >= FARTHEST:
+        raise InputError(f"{option} {text!r} is more than 1000 km away: are these metres?")
+    if len(numbers) == 3 and abs(numbers[2]) > 2.0 * math.pi:
+        raise InputError(f"{option} {text!r}: the yaw is in radians, from -6.28 to 6.28")
     return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
 
 
@@ -196,7 +205,9 @@ def _write(out: Path, found: "Navigation") -> None:
     write_guide_paths(out, [found.path], [found.reason], found.waypoints)
 
 
-def _sentence(out: Path, found: "Navigation", goal: tuple[float, float], verdict: str) -> str:
+def _sentence(
+    out: Path, found: "Navigation", goal: tuple[float, float], verdict: str, searched: bool
+) -> str:
     count = len(found.waypoints) - 1
     between = f"{count} waypoint{'' if count == 1 else 's'} on the way" if count else "no waypoints"
     effort = f"{found.connections} connections, {found.seconds:.1f} s"
@@ -206,7 +217,8 @@ def _sentence(out: Path, found: "Navigation", goal: tuple[float, float], verdict
             f" {between} ({effort}){verdict}"
         )
     left = math.dist(found.path.position[-1, :2], goal)
+    what = "was not reached within the limit" if searched else "was not reached by walking to it"
     return (
-        f"{out}: the goal was not reached within the limit ({effort}); the best partial path ends"
+        f"{out}: the goal {what} ({effort}); the best partial path ends"
         f" {left:.2f} m before it{verdict}"
     )

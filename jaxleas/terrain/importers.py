@@ -62,10 +62,11 @@ def import_terrain(
                 f"it cannot be read at a resolution of {resolution:g} m"
             )
         return height_map
+    cell = DEFAULT_RESOLUTION if resolution is None else resolution
     if suffix == ".json":
-        return rasterise(read_scene(path), resolution or DEFAULT_RESOLUTION)
+        return rasterise(read_scene(path), cell)
     if suffix in SUFFIXES:
-        return import_mesh(path, resolution or DEFAULT_RESOLUTION, up, scale)
+        return import_mesh(path, cell, up, scale)
     if suffix == ".png":
         if resolution is None or z_min is None or z_max is None:
             raise InputError(f"{path} is an image: say its resolution, z_min and z_max [m]")

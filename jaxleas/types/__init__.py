@@ -1,8 +1,24 @@
-"""Values that cross rooms. This room imports nothing of ours."""
+"""Values that cross rooms. This room imports nothing of ours.
+
+`RootMotion` is a pytree, and comes only when it is asked for: what reads files and draws them loads
+no JAX.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from jaxleas.types.errors import InputError, JaxleasError
 from jaxleas.types.paths import GuidePath
 from jaxleas.types.queries import Query
-from jaxleas.types.root import RootMotion
+
+if TYPE_CHECKING:
+    from jaxleas.types.root import RootMotion
 
 __all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion"]
+
+
+def __getattr__(name: str) -> Any:
+    if name != "RootMotion":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from jaxleas.types.root import RootMotion
+
+    return RootMotion

@@ -1,11 +1,9 @@
 """The function behind `jaxleas view`."""
 
-import math
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 from jaxleas.types.errors import InputError
 
@@ -15,22 +13,9 @@ if TYPE_CHECKING:
     from jaxleas.terrain.height_map import HeightMap
     from jaxleas.viewer.clips import Clip
     from jaxleas.viewer.drive import Drive
-    from jaxleas.viewer.recording import Recorder
+    from jaxleas.viewer.show import Player
 
-FRAME = 1.0 / 30.0  # [s]
-
-
-class Player(Protocol):
-    """What moves on the page."""
-
-    @property
-    def busy(self) -> bool:
-        """Whether it has more to show by itself."""
-        ...
-
-    def frame(self, seconds: float) -> None:
-        """Let time pass."""
-        ...
+FARTHEST = 1e6  # of a start or a goal [m]
 
 
 def view(
@@ -76,13 +61,15 @@ def view(
     """
     from jaxleas.terrain.importers import import_terrain
     from jaxleas.terrain.scene import read_scene
-    from jaxleas.training.compilation import keep_compiled_programs
-    from jaxleas.viewer.figure import draw_terrain
+    from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
+    from jaxleas.viewer.show import show, write_recording
 
-    _require_a_task(policies, goal, guide, plan, problem, record)
-    keep_compiled_programs()
+    _require_a_task(policies, start, goal, guide, plan, problem, record)
+    for each in policies or ():  # before a page is shown; what is in them is read behind it
+        if not each.exists():
+            raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
     clips = _clips(guide, plan, problem)
     ground = import_terrain(
         terrain,
@@ -96,21 +83,25 @@ def view(
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
+        if policies:
+            look_near(server, ground, None if start is None else start[:2])
         recorder = Recorder(server)
         if record is None:
             _announce(server, browser)
             recorder.add_panel()
+            paint_sky(server)
+        # JAX is loaded only now, while the browser is busy with the ground.
         players: list[Player] = []
         if clips:
             players.append(_play_back(server, clips, playing=record is not None))
         if policies:
-            waiting = server.gui.add_markdown("The policies are being compiled ...")
+            waiting = server.gui.add_markdown("The policies are being loaded ...")
             players.append(_drive(server, ground, policies, start, goal))
             waiting.remove()
         if record is None:
-            _show(players, recorder)
+            show(players, recorder)
         else:
-            _write_recording(record, recorder, players)
+            write_recording(record, recorder, players)
 
 
 @contextmanager
@@ -126,6 +117,7 @@ def _until_interrupted(is_the_end: bool) -> Iterator[None]:
 
 def _require_a_task(
     policies: Sequence[Path] | None,
+    start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
     guide: Path | None,
     plan: Path | None,
@@ -134,10 +126,15 @@ def _require_a_task(
 ) -> None:
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
-    if goal is not None and not all(map(math.isfinite, goal)):
-        raise InputError(f"--goal {goal[0]:g} {goal[1]:g}: give finite numbers x y [m]")
-    if goal is not None and not policies:
-        raise InputError("--goal needs --policies: there is nobody to walk there")
+    for option, numbers, wanted in (
+        ("--start", start, "x y [m], yaw [deg]"),
+        ("--goal", goal, "x y [m]"),
+    ):
+        if numbers is not None and not all(abs(each) < FARTHEST for each in numbers):
+            given = " ".join(f"{each:g}" for each in numbers)
+            raise InputError(f"{option} {given}: give finite numbers below 1000 km, {wanted}")
+        if numbers is not None and not policies:
+            raise InputError(f"{option} needs --policies: there is nobody to walk there")
     if record is None:
         return
     if record.suffix != ".html":
@@ -149,6 +146,8 @@ def _require_a_task(
 
 
 def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list[Clip]":
+    if guide is None and plan is None:
+        return []  # without a second for what reads them
     from jaxleas.viewer.clips import read_guide_clips, read_plan_clip
 
     clips = read_guide_clips(guide) if guide is not None else []
@@ -158,18 +157,18 @@ def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list
 
 
 def _announce(server: "ViserServer", browser: bool) -> None:
-    from jaxleas.viewer.server import address_of, open_browser
+    from jaxleas.viewer.server import address_of, from_elsewhere, open_browser
 
-    address, port = address_of(server), server.get_port()
+    address = address_of(server)
     opened = browser and open_browser(address)
     print(
-        f"{address} {'is open in your browser' if opened else 'shows it in any browser'}; from"
-        f" elsewhere forward the port (ssh -L {port}:127.0.0.1:{port} THIS_MACHINE); Ctrl-C ends",
+        f"{address} {'is open in your browser' if opened else 'shows it in any browser'};"
+        f" {from_elsewhere(server.get_host(), server.get_port())}; Ctrl-C ends",
         flush=True,
     )
 
 
-def _play_back(server: "ViserServer", clips: "list[Clip]", playing: bool) -> Player:
+def _play_back(server: "ViserServer", clips: "list[Clip]", playing: bool) -> "Player":
     from jaxleas.robots import load_robot
     from jaxleas.viewer.playback import Playback
 
@@ -190,20 +189,23 @@ def _drive(
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.standing import choose_start, require_start
     from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.viewer.drive import Drive
-    from jaxleas.viewer.figure import look_at_start
+    from jaxleas.viewer.ground import look_near
     from jaxleas.viewer.walker import Walker
 
+    keep_compiled_programs()
     loaded = [load_policy(each) for each in policies]
     envs = [SteeringEnv(each.config) for each in loaded]
     place = (
         choose_start(envs[0], terrain) if start is None else require_start(envs[0], terrain, start)
     )
-    look_at_start(server, terrain, place)
+    x, y, _ = place.position
+    look_near(server, terrain, (float(x), float(y)))
     atlas = make_atlas([terrain])
     walkers = [
-        Walker(_name(path), env, policy, atlas)
-        for path, env, policy in zip(policies, envs, loaded, strict=True)
+        Walker(name, env, policy, atlas)
+        for name, env, policy in zip(_names(policies), envs, loaded, strict=True)
     ]
     drive = Drive(server, terrain, walkers, place)
     if goal is not None:
@@ -211,35 +213,11 @@ def _drive(
     return drive
 
 
-def _name(path: Path) -> str:
-    """Return what a policy is called: its run folder, whichever file in it was given."""
-    whole = path.resolve()
-    return whole.parent.name if whole.stem == "policy" else whole.stem
-
-
-def _show(players: list[Player], recorder: "Recorder") -> None:
-    """Show frames until somebody presses Ctrl-C."""
-    before = time.monotonic()
-    while True:
-        now = time.monotonic()
-        for player in players:
-            player.frame(now - before)
-        recorder.frame(now - before)
-        before = now
-        time.sleep(max(0.0, FRAME - (time.monotonic() - now)))
-
-
-def _write_recording(path: Path, recorder: "Recorder", players: list[Player]) -> None:
-    """Play everything once, as fast as it goes, and write it."""
-    from jaxleas.files import write_text
-    from jaxleas.viewer.recording import MOST_SECONDS
-
-    recorder.start()
-    seconds = 0.0
-    while any(player.busy for player in players) and seconds < MOST_SECONDS:
-        for player in players:
-            player.frame(FRAME)
-        recorder.frame(FRAME)
-        seconds += FRAME
-    write_text(path, recorder.finish())
-    print(f"{path}: {seconds:.0f} s, opens in any browser")
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Return what policies are called: the run folder, with the file where two are alike."""
+    whole = [each.resolve() for each in paths]
+    short = [each.parent.name if each.stem == "policy" else each.stem for each in whole]
+    return [
+        name if short.count(name) == 1 else "/".join(each.parts[-2:])
+        for name, each in zip(short, whole, strict=True)
+    ]

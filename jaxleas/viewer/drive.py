@@ -10,7 +10,7 @@ import numpy as np
 
 from jaxleas.guide.standing import Pose
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.viewer.figure import GOAL, ROBOTS, Figure
+from jaxleas.viewer.figure import ROBOTS, Figure, draw_goal
 from jaxleas.viewer.terrain_mesh import meet
 from jaxleas.viewer.walker import Walker
 
@@ -23,9 +23,9 @@ TURN = np.radians(15.0)
 """A press of a key turns the course by this."""
 MOST_STEPS_A_FRAME = 10
 """Beyond this the page would stand still while the robots run."""
-TRAIL_EVERY, SEEN_EVERY = 9, 3
-"""Frames between two drawings of the trail, and of what the policy sees: the page redoes both."""
-TRAIL_LENGTH = 3000  # configurations that are kept
+TRAIL_EVERY, SEEN_EVERY, SPEAK_EVERY = 9, 4, 8
+"""Frames between two drawings of the trail, of what the policy sees, and of the status: the page
+makes each of them anew."""
 WORDS = {
     "waiting": "stands, waiting for a goal",
     "walking": "walks",
@@ -46,9 +46,8 @@ class Rider:
         """Go back to the start."""
         self.walker.reset(self._start)
         self._elapsed, self._frames = 0.0, 0
-        self._trail = [self._start.position]
+        self.figure.trail.begin(self._start.position)
         self._draw()
-        self.figure.show_trail(np.array(self._trail))
 
     def advance(self, seconds: float, steer: Callable[[Walker], None]) -> None:
         """Let time pass; the figure moves evenly between configurations.
@@ -65,10 +64,10 @@ class Rider:
             self._elapsed -= self.time_step
             steer(self.walker)
             self.walker.step()
-            self._trail = [*self._trail[-TRAIL_LENGTH:], self.walker.pose.position]
+            self.figure.trail.add(self.walker.pose.position)
         stands = self.walker.state != "walking"
         if stands or self._frames % TRAIL_EVERY == 0:
-            self.figure.show_trail(np.array(self._trail))
+            self.figure.trail.draw()
         if self._frames % SEEN_EVERY == 0:
             self._perceive()
         self._draw()
@@ -109,14 +108,13 @@ class Drive:
         self._terrain = terrain
         self._wishes: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._course: float | None = None
-        self._spoken = ""
+        self._spoken = ("", "")
+        self._frames = 0
         self._riders = [
-            Rider(walker, self._figure(server, index, walker), start)
+            Rider(walker, self._figure(server, index, walker, len(walkers) > 1), start)
             for index, walker in enumerate(walkers)
         ]
-        self._goal = server.scene.add_icosphere(
-            "/goal", radius=0.07, color=GOAL, position=start.position, visible=False
-        )
+        self._goal = draw_goal(server, start.position)
         with server.gui.add_folder("Drive"):
             self._add_panel(server)
         server.scene.on_click()(self._clicked)
@@ -176,11 +174,13 @@ class Drive:
             x, y, _ = walker.pose.position
             walker.seek((x + LEAD * np.cos(self._course), y + LEAD * np.sin(self._course)))
 
-    def _figure(self, server: "ViserServer", index: int, walker: Walker) -> Figure:
+    def _figure(self, server: "ViserServer", index: int, walker: Walker, named: bool) -> Figure:
         name, robot = f"/robot_{index}", walker.env.robot
         figure = Figure(server, name, robot, ROBOTS[index % len(ROBOTS)])
-        top = max(box.high[2] for box in robot.trunk)
-        server.scene.add_label(f"{name}/name", walker.name, position=(0.0, 0.0, top + 0.15))
+        if named:
+            # They begin at one place: each name stands over that of the one before.
+            top = max(box.high[2] for box in robot.trunk) + 0.15 * (index + 1)
+            server.scene.add_label(f"{name}/name", walker.name, position=(0.0, 0.0, top))
         return figure
 
     def _add_panel(self, server: "ViserServer") -> None:
@@ -199,7 +199,7 @@ class Drive:
         self._speed = gui.add_slider("Times real speed", 0.5, 20.0, 0.5, 4.0)
         reach = gui.add_checkbox("Reach of the legs", True)
         seen = gui.add_checkbox("What the policy sees", True)
-        self._status = gui.add_markdown("")
+        self._status = gui.add_html("")
 
         @reach.on_update
         def _(_: Any) -> None:
@@ -235,13 +235,17 @@ class Drive:
             self._wishes.put(lambda: self.send(goal))
 
     def _speak(self) -> None:
-        lines = []
-        for rider in self._riders:
-            walker = rider.walker
-            lines.append(
-                f"**{walker.name}** {WORDS[walker.state]}; {walker.steps * rider.time_step:.0f} s,"
-                f" margin {walker.sight.margin:+.2f} m"
-            )
-        text = "\n\n".join(lines)
-        if text != self._spoken:
-            self._status.content = self._spoken = text
+        """Say how each robot fares: at once what has become of it, and now and then the numbers."""
+        self._frames += 1
+        walkers = [rider.walker for rider in self._riders]
+        states = " ".join(walker.state for walker in walkers)
+        if states == self._spoken[0] and self._frames % SPEAK_EVERY:
+            return
+        text = "".join(
+            f"<p><b>{html.escape(walker.name)}</b> {WORDS[walker.state]}; {walker.seconds:.0f} s,"
+            f" margin {walker.sight.margin:+.2f} m</p>"
+            for walker in walkers
+        )
+        if text != self._spoken[1]:
+            self._status.content = f'<div style="font-size: 0.875em; margin: 0.6em">{text}</div>'
+        self._spoken = (states, text)

@@ -1,22 +1,26 @@
 """Playing back: a slider through time, and the robot where it was then."""
 
 from collections.abc import Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from jaxleas.robots import Robot
-from jaxleas.viewer.clips import Clip
-from jaxleas.viewer.figure import INVALID, LIMBS, Colour, Figure, draw_line
+from jaxleas.viewer.clips import Clip, Foothold
+from jaxleas.viewer.figure import INVALID, LIMBS, Figure, mesh_of_hull
+from jaxleas.viewer.ground import Colour
+from jaxleas.viewer.painted import add_painted, shade
+from jaxleas.viewer.ribbon import draw_path
 
 if TYPE_CHECKING:
-    from viser import ViserServer
+    from viser import GlbHandle, ViserServer
 
 PLAYED: Colour = (60, 110, 170)
 THICKNESS = 0.015  # of a sole [m]
 LIFT = np.array([0.0, 0.0, 0.5 * THICKNESS])
-LIFTED, STANDING = 0.25, 1.0
-"""Opacity of a foothold that the foot has left, and of one it stands on."""
+LIFTED = 0.25
+"""Opacity of a foothold that the foot has left."""
 
 
 class Playback:
@@ -35,7 +39,7 @@ class Playback:
         self._time, self._feet = 0.0, []
         for index, clip in enumerate(clips):
             colour = PLAYED if clip.valid.all() else INVALID
-            draw_line(server, f"/paths/{index}", clip.position, colour)
+            draw_path(server, f"/paths/{index}", clip.position, colour)
         with server.gui.add_folder("Play back"):
             self._add_panel()
         self._choose(0)
@@ -90,25 +94,29 @@ class Playback:
 
     def _choose(self, index: int) -> None:
         self._clip, self._time = self._clips[index], 0.0
-        for _, node in self._feet:
-            node.remove()
-        length, width = (2.0 * half for half in self._clip.half_size)
+        self._server.scene.remove_by_name("/footholds")
+        half_size = (*self._clip.half_size, 0.5 * THICKNESS)
         self._feet = [
-            (
-                foothold,
-                self._server.scene.add_box(
-                    f"/footholds/{number}",
-                    color=LIMBS[foothold.limb],
-                    dimensions=(length, width, THICKNESS),
-                    position=foothold.position + LIFT,
-                    wxyz=(np.cos(0.5 * foothold.yaw), 0.0, 0.0, np.sin(0.5 * foothold.yaw)),
-                    opacity=STANDING,
-                ),
-            )
+            (foothold, self._add_foothold(f"/footholds/{number}", foothold, half_size))
             for number, foothold in enumerate(self._clip.footholds)
         ]
         self._slider.value = 0.0
         self._draw()
+
+    def _add_foothold(
+        self, name: str, foothold: Foothold, half_size: tuple[float, float, float]
+    ) -> "tuple[GlbHandle, GlbHandle]":
+        """Add a sole twice, both hidden: as it stands, and as it has been left."""
+        sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
+        colours = shade(sole, np.array(LIMBS[foothold.limb], float))
+        nodes = (
+            add_painted(self._server, f"{name}/standing", sole, colours),
+            add_painted(self._server, f"{name}/left", sole, colours, LIFTED),
+        )
+        for node in nodes:
+            node.position = foothold.position + LIFT
+            node.wxyz = (np.cos(0.5 * foothold.yaw), 0.0, 0.0, np.sin(0.5 * foothold.yaw))
+        return nodes
 
     def _draw(self) -> None:
         now = self._clip.at(self._time)
@@ -117,6 +125,6 @@ class Playback:
             pose, valid = now
             self._figure.place(pose)
             self._figure.mark(valid)
-        for foothold, node in self._feet:
-            node.visible = foothold.time <= self._time + 1e-9
-            node.opacity = STANDING if self._time < foothold.until else LIFTED
+        for foothold, (standing, left) in self._feet:
+            stands = foothold.time <= self._time + 1e-9 and self._time < foothold.until
+            standing.visible, left.visible = stands, foothold.until <= self._time

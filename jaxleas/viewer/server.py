@@ -55,6 +55,14 @@ def address_of(server: "ViserServer") -> str:
     return f"http://{local}:{server.get_port()}"
 
 
+def from_elsewhere(host: str, port: int) -> str:
+    """Say how, or that, other machines reach the page."""
+    if host == "localhost" or host == "::1" or host.startswith("127."):
+        there = f"[{host}]" if ":" in host else host
+        return f"from elsewhere forward the port (ssh -L {port}:{there}:{port} THIS_MACHINE)"
+    return "whoever reaches this machine can open it, too: there is no password"
+
+
 def open_browser(address: str) -> bool:
     """Show the page in a browser window; return whether there is one to show it in.
 
@@ -93,12 +101,12 @@ def _require_free(host: str, port: int) -> None:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(address)
             probe.listen(1)
-    except OSError as error:
-        if error.errno == errno.EADDRINUSE:
+    except (OSError, UnicodeError) as error:  # the latter of a name that can be no host's
+        if getattr(error, "errno", None) == errno.EADDRINUSE:
             raise InputError(_in_use(host, port)) from error
         raise InputError(
-            f"cannot listen on {host}, port {port}: {error.strerror or error}; --host 127.0.0.1 is"
-            " usual, with a --port above 1023"
+            f"cannot listen on {host!r}, port {port}: {getattr(error, 'strerror', None) or error};"
+            " --host 127.0.0.1 is usual, with a --port above 1023"
         ) from error
 
 

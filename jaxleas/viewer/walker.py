@@ -106,6 +106,11 @@ class Walker:
             self._stand("arrived")
 
     @property
+    def seconds(self) -> float:
+        """Walked since the start, on the robot's clock [s]."""
+        return self.steps * self.env.config.limits.time_step
+
+    @property
     def goal(self) -> tuple[float, float] | None:
         """Where the robot was last sent (x, y) [m]."""
         return self._goal
@@ -117,12 +122,8 @@ class Walker:
         return Pose(self.before.position + share * way, self.before.yaw + share * turn)
 
     def points_seen(self) -> Float[np.ndarray, "points 3"]:
-        """Return the observation's grid in the world, at the heights the policy is told [m]."""
-        ahead, left = self.env.layout.points_in_root.T
-        cosine, sine = np.cos(self.pose.yaw), np.sin(self.pose.yaw)
-        x, y, z = self.pose.position
-        east, north = cosine * ahead - sine * left, sine * ahead + cosine * left
-        return np.stack([x + east, y + north, z + self.sight.heights], axis=-1)
+        """Return the observation's grid in the root frame, at the heights that are told [m]."""
+        return np.column_stack([self.env.layout.points_in_root, self.sight.heights])
 
     def _stand(self, state: State) -> None:
         self.state = state

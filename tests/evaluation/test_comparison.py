@@ -138,6 +138,13 @@ def test_the_command_writes_and_prints_the_table(run, tmp_path, capsys, asked):
         evaluate(run, suite="hole", planners=["mip"], starts=2, time_limit=-1.0)
     with pytest.raises(InputError, match="--max-combinations -1"):
         evaluate(run, suite="hole", planners=["sl1m"], starts=2, max_combinations=-1)
+    for name, content in (("empty.json", ""), ("scene.json", '{"surfaces": {}}')):
+        (run / name).write_text(content)
+        with pytest.raises(InputError, match="is there and holds no evaluation"):
+            evaluate(run, suite="hole", starts=2, json=run / name)
+        assert (run / name).read_text() == content
+    with pytest.raises(InputError, match="is a file; give a folder"):
+        evaluate(run, suite="hole", starts=2, pictures=run / "empty.json")
 
 
 def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):

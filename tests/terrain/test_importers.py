@@ -124,6 +124,7 @@ def test_broken_mesh_files_are_refused(tmp_path, terrace):
     ("options", "problem"),
     [
         ({"resolution": 0.001}, "resolution"),
+        ({"resolution": 0.0}, "resolution"),
         ({"resolution": float("nan")}, "resolution"),
         ({"up": "w"}, "up is 'w'"),
         ({"scale": 0.0}, "scale"),
@@ -132,7 +133,7 @@ def test_broken_mesh_files_are_refused(tmp_path, terrace):
 )
 def test_bad_mesh_options_are_refused(tmp_path, options, problem):
     with pytest.raises(InputError, match=problem):
-        import_mesh(stl(tmp_path / "mesh.stl", FLAT), **options)
+        import_terrain(stl(tmp_path / "mesh.stl", FLAT), **options)
 
 
 def test_a_mesh_of_too_many_cells_is_refused(tmp_path):

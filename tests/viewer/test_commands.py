@@ -15,8 +15,8 @@ from jaxleas.terrain import transition, write_height_map, write_scene
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from jaxleas.viewer import server as viewer_server
-from jaxleas.viewer.commands import view
-from jaxleas.viewer.server import open_browser, serving
+from jaxleas.viewer.commands import _names, view
+from jaxleas.viewer.server import from_elsewhere, open_browser, serving
 from tests.guide.walkers import flat_map, random_policy
 from tests.viewer.test_clips import straight
 
@@ -55,7 +55,7 @@ def test_a_walk_is_recorded_into_one_file(terrain, tmp_path, capsys):
     seconds, shown = messages(content)
     assert seconds > 0.1
     names = {message.get("name") for _, message in shown}
-    assert {"/terrain", "/robot_0", "/robot_0/reach_left", "/seen/robot_0", "/goal"} <= names
+    assert {"/terrain", "/robot_0", "/robot_0/reach_left", "/robot_0/seen", "/goal"} <= names
     moved = [
         m["position"]
         for t, m in shown
@@ -89,6 +89,9 @@ def test_bad_input_is_one_sentence(terrain, tmp_path):
         ({"record": tmp_path / "a.html", "policies": [terrain]}, "--goal"),
         ({"goal": (np.nan, 0.0), "policies": [terrain]}, "--goal nan 0: give finite numbers"),
         ({"goal": (1.0, 0.0)}, "--goal needs --policies"),
+        ({"start": (1.0, 0.0, 0.0)}, "--start needs --policies"),
+        ({"start": (1e9, 0.0, 0.0), "policies": [terrain]}, "--start 1e+09 0 0: give finite"),
+        ({"policies": [tmp_path / "nobody"]}, "there is no"),
         ({"guide": terrain}, "lacks the array"),
         ({"port": 70_000}, "no port"),
     ):
@@ -103,8 +106,9 @@ def test_a_port_in_use_is_refused(terrain):
         port = other.getsockname()[1]
         with pytest.raises(InputError, match=f"port {port} of 127.0.0.1 is in use"):
             view(terrain, port=port)
-    with pytest.raises(InputError, match="cannot listen on"):
-        view(terrain, host="192.0.2.1")  # an address for documentation: nobody's
+    for host in ("192.0.2.1", "a" * 80):  # an address for documentation, nobody's; and no name
+        with pytest.raises(InputError, match="cannot listen on"):
+            view(terrain, host=host)
 
 
 def test_without_viser_it_says_what_to_install(terrain, monkeypatch):
@@ -120,12 +124,50 @@ def test_without_viser_it_says_what_to_install(terrain, monkeypatch):
         view(terrain)
 
 
+def test_the_ground_is_shown_before_jax_is_loaded():
+    files = (
+        "terrain.importers",
+        "viewer.commands",
+        "viewer.ground",
+        "viewer.show",
+        "viewer.server",
+    )
+    code = "import sys, " + ", ".join(f"jaxleas.{file}" for file in files)
+    code += "; assert not {'jax', 'flax', 'scipy', 'trimesh'} & sys.modules.keys()"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_policies_of_one_run_are_told_apart(tmp_path):
+    run = tmp_path / "run"
+    both = [run / "policy.npz", run / "policy.onnx"]
+    assert _names([run]) == ["run"] == _names(both[:1])
+    assert _names([*both, tmp_path / "other.onnx"]) == [
+        "run/policy.npz",
+        "run/policy.onnx",
+        "other",
+    ]
+
+
 def test_without_a_display_no_browser_is_opened(monkeypatch):
     monkeypatch.setattr(viewer_server.sys, "platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(viewer_server.webbrowser, "open", lambda _: pytest.fail("opened"))
     assert not open_browser("http://127.0.0.1:8080")
+
+
+@pytest.mark.parametrize(
+    ("host", "says"),
+    [
+        ("127.0.0.1", "ssh -L 80:127.0.0.1:80 "),
+        ("localhost", "ssh -L 80:localhost:80 "),
+        ("::1", "ssh -L 80:[::1]:80 "),
+        ("0.0.0.0", "no password"),
+        ("192.0.2.1", "no password"),
+    ],
+)
+def test_it_says_how_other_machines_reach_it(host, says):
+    assert says in from_elsewhere(host, 80)
 
 
 def test_it_listens_on_the_loopback_interface_alone():

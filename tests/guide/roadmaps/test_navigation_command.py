@@ -65,6 +65,8 @@ def test_an_unreachable_goal_is_told(tmp_path, capsys):
     assert "the goal was not reached within the limit" in said
     assert "the best partial path ends" in said
     assert read_guide_paths(tmp_path / "guide.npz").reasons == ("stopped",)
+    navigate(tmp_path / "map.npz", tmp_path / "guide.npz", "--planner", "none")
+    assert "the goal was not reached by walking to it" in capsys.readouterr().out
 
 
 def box_map() -> HeightMap:
@@ -100,6 +102,8 @@ def test_an_invalid_start_says_which_condition_by_how_much_and_what_would_do(tmp
         ("1,a", "1,1", "--from '1,a' is not"),
         ("-1,-1", "1,1,0", "--to '1,1,0' is not x,y"),
         ("1,nan", "1,1", "finite"),
+        ("1e300,0", "1,1", "--from '1e300,0' is more than 1000 km away"),
+        ("-1,-1,90", "1,1", "--from '-1,-1,90': the yaw is in radians"),
     ],
 )
 def test_ends_that_cannot_be_used_are_refused(terrain, tmp_path, start, goal, complaint):
@@ -113,6 +117,8 @@ def test_what_is_missing_is_told(terrain, tmp_path, monkeypatch):
         navigate(terrain, tmp_path / "out.npz", "--steering", "leas", "--planner", "none")
     with pytest.raises(InputError, match="seconds"):
         navigate(terrain, tmp_path / "out.npz", "--limit", "0")
+    with pytest.raises(InputError, match="--seed -1 must not be negative"):
+        navigate(terrain, tmp_path / "out.npz", "--seed", "-1")
     monkeypatch.setitem(sys.modules, "ompl", None)
     with pytest.raises(JaxleasError, match="extra 'roadmaps'"):
         navigate(terrain, tmp_path / "out.npz")
