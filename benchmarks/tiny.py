@@ -3,7 +3,6 @@
 from typing import Any
 
 BATCH = 64 * 10
-EVERY = 2  # updates between two examinations
 
 
 def tiny_training(updates: int = 8) -> dict[str, Any]:
@@ -19,6 +18,6 @@ def tiny_training(updates: int = 8) -> dict[str, Any]:
             "epochs": 2,
             "candidates": 64,
         },
-        "held_out": {"every": EVERY, "starts": 16, "arenas": 1, "steps": 40},
+        "held_out": {"every": 2, "starts": 16, "arenas": 1, "steps": 40},
         "final": {"evaluate": False},
     }

@@ -10,7 +10,6 @@ from typing import Any
 
 from benchmarks.kills.moments import cut_power, draw_moment, signal_of
 from benchmarks.kills.training import UPDATES, Training, content, write_config
-from benchmarks.tiny import BATCH, EVERY
 from jaxleas.files.npz import DamagedError
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.types import InputError
@@ -40,7 +39,7 @@ class Killer:
         self._run = folder / "run"
         shutil.rmtree(folder / "whole", ignore_errors=True)
         shutil.rmtree(self._run, ignore_errors=True)
-        self._whole, self._seconds = self._uninterrupted()
+        self._whole, self._every, self._seconds = self._uninterrupted()
 
     @property
     def is_under_way(self) -> bool:
@@ -83,20 +82,22 @@ class Killer:
             "training_steps_lost_by_them": self._lost_steps,
         }
 
-    def _uninterrupted(self) -> tuple[dict[str, object], float]:
-        for name in ("compiles", "whole"):
+    def _uninterrupted(self) -> tuple[dict[str, object], dict[str, object], float]:
+        """Return the content of a run left in peace, all its checkpoints, and how long it took."""
+        found = []
+        for name, extra in (("every", ["--checkpoints.keep_last", "999"]), ("whole", [])):
             shutil.rmtree(self._folder / name, ignore_errors=True)
             begun = time.monotonic()
-            training = Training(
-                [str(self._config), "--run-dir", str(self._folder / name)], self._folder / "log"
-            )
+            arguments = [str(self._config), "--run-dir", str(self._folder / name), *extra]
+            training = Training(arguments, self._folder / "log")
             if training.end() != 0:
                 raise RuntimeError(f"the training itself failed:\n{training.output}")
             seconds = time.monotonic() - begun  # of the second: all is compiled then
-        first, second = (content(self._folder / name) for name in ("compiles", "whole"))
-        if first != second:
+            found.append(content(self._folder / name))
+        every, whole = found
+        if differences(whole, every | {"config": whole["config"]}, _checkpoints(every)):
             raise RuntimeError("two trainings that nobody interrupted differ")
-        return second, seconds
+        return whole, _checkpoints(every), seconds
 
     def _start(self, begun: bool) -> Training:
         if begun:
@@ -143,7 +144,7 @@ class Killer:
         except (InputError, DamagedError, OSError) as error:
             self.failures.append(f"a run ended corrupt: {error}")
             return
-        other = differences(self._whole, found)
+        other = differences(self._whole, found, self._every)
         if other:
             self.failures.append(f"a run ended different in {', '.join(sorted(other))}")
             return
@@ -151,22 +152,26 @@ class Killer:
         shutil.rmtree(self._run)
 
 
-def differences(whole: dict[str, object], found: dict[str, object]) -> list[str]:
+def differences(
+    whole: dict[str, object], found: dict[str, object], every: dict[str, object]
+) -> list[str]:
     """Return in what an interrupted run differs from one left in peace.
 
-    An interruption between two examinations saves a checkpoint of its own: as one of the last few
-    it may stand in the place of an older one. The newest and all that both hold must be the same.
+    A kill between the last checkpoint's writing and the oldest one's removal leaves the oldest. An
+    interruption between two examinations saves a checkpoint of its own: as one of the last few it
+    may stand in the place of an older one. Everything else must be there, and the same.
+
+    Args:
+        whole: content of the run left in peace.
+        found: content of the other.
+        every: checkpoints of a run that kept those of all examinations.
     """
-    extra = {name for name in found.keys() - whole.keys() if _is_between_examinations(name)}
-    missing = sorted(whole.keys() - found.keys())
-    passed = extra | set(missing[: len(extra)]) - {max(whole, key=_step)}
-    every = (whole.keys() | found.keys()) - passed
-    return sorted(name for name in every if whole.get(name) != found.get(name))
+    wanted = whole | {name: every[name] for name in found.keys() & every.keys()}
+    own = {name for name in found.keys() - wanted.keys() if name.startswith("step_")}
+    missing = sorted((whole.keys() & every.keys()) - found.keys() - {max(every)})
+    names = (wanted.keys() | found.keys()) - own - set(missing[: len(own)])
+    return sorted(name for name in names if wanted.get(name) != found.get(name))
 
 
-def _step(name: str) -> int:
-    return int(name[5:-4]) if name.startswith("step_") else -1
-
-
-def _is_between_examinations(name: str) -> bool:
-    return _step(name) >= 0 and (_step(name) // BATCH) % EVERY != 0
+def _checkpoints(found: dict[str, object]) -> dict[str, object]:
+    return {name: each for name, each in found.items() if name.startswith("step_")}

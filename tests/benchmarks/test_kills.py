@@ -29,16 +29,17 @@ def test_killed_at_random_moments_a_run_ends_bitwise_equal(tmp_path):
     assert report["corrupt_folders"] == 0
 
 
-def test_an_interruptions_checkpoint_may_stand_in_the_place_of_an_older_one():
-    whole = {"policy.npz": 1, "metrics": 2, "step_000000014080.npz": 3, "step_000000015360.npz": 4}
-    found = {"policy.npz": 1, "metrics": 2, "step_000000014720.npz": 9, "step_000000015360.npz": 4}
-    assert differences(whole, found) == []
-    assert differences(whole, whole) == []
-    assert differences(whole, found | {"step_000000015360.npz": 5}) == ["step_000000015360.npz"]
-    assert differences(whole, found | {"policy.npz": 5}) == ["policy.npz"]
-    del found["step_000000014720.npz"]
-    assert differences(whole, found) == ["step_000000014080.npz"]
-    older = {**whole, "step_000000012800.npz": 7}
-    assert differences(whole, older) == ["step_000000012800.npz"]
-    newest = {"policy.npz": 1, "metrics": 2, "step_000000014720.npz": 9}
-    assert differences({**newest, "step_000000015360.npz": 4}, newest) == ["step_000000015360.npz"]
+def test_what_an_interrupted_run_may_leave_otherwise():
+    first, second, last = (f"step_{step:012d}.npz" for step in (12800, 14080, 15360))
+    between = "step_000000014720.npz"  # where an interruption came, at no examination
+    every = {first: 2, second: 3, last: 4}
+    whole = {"policy.npz": 1, "metrics": 2, second: 3, last: 4}
+    saved = {"policy.npz": 1, "metrics": 2, between: 9, last: 4}
+    for found in (whole, saved, whole | {first: 2}, whole | {between: 9}):
+        assert differences(whole, found, every) == []
+    for name in ("policy.npz", last):
+        assert differences(whole, saved | {name: 7}, every) == [name]
+        assert differences(whole, {k: v for k, v in saved.items() if k != name}, every) == [name]
+    assert differences(whole, whole | {first: 7}, every) == [first]
+    assert differences(whole, whole | {"other": 1}, every) == ["other"]
+    assert differences(whole, {k: v for k, v in whole.items() if k != second}, every) == [second]
