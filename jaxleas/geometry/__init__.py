@@ -1,19 +1,29 @@
 """Rotations, boxes, polytopes; whether polygons meet them, and what lies inside."""
 
+from jaxleas.geometry.angles import bearing, sine_cosine
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.clipping import clip_polygon
 from jaxleas.geometry.intersections import pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.polytopes import Polytope
-from jaxleas.geometry.rotations import rotate_by_yaw, rotate_to_root, rotate_to_world, wrap_angle
+from jaxleas.geometry.rotations import (
+    rotate_by_yaw,
+    rotate_to_root,
+    rotate_to_world,
+    squared_length,
+    wrap_angle,
+)
 
 __all__ = [
     "Box",
     "Polytope",
+    "bearing",
     "clip_polygon",
     "pack_polygons",
     "polygons_meet_polytope",
     "rotate_by_yaw",
     "rotate_to_root",
     "rotate_to_world",
+    "sine_cosine",
+    "squared_length",
     "wrap_angle",
 ]

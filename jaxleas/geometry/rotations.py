@@ -1,8 +1,12 @@
 """Turning vectors about the vertical: all the rotation an upright root needs (T 3.3.1)."""
 
+from functools import reduce
+
 import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
+
+from jaxleas.geometry.angles import sine_cosine
 
 
 def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"]) -> Array:
@@ -15,7 +19,7 @@ def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"])
     Returns:
         The turned vector, of the same shape.
     """
-    cosine, sine = jnp.cos(yaw), jnp.sin(yaw)
+    sine, cosine = sine_cosine(yaw)
     x, y = vector[..., 0], vector[..., 1]
     turned = jnp.stack([x * cosine - y * sine, x * sine + y * cosine], axis=-1)
     return jnp.concatenate([turned, vector[..., 2:]], axis=-1)
@@ -49,6 +53,13 @@ def rotate_to_root(
         The vectors as the root sees them, of the same shape.
     """
     return rotate_by_yaw(vector, -yaw[..., None])
+
+
+def squared_length(vector: Float[Array, "*batch D"]) -> Float[Array, "*batch"]:
+    """Return the squared length of one vector per robot [its unit squared]."""
+    # Written out: XLA:CPU hands a sum over three numbers to a library, which is slow at it.
+    components = [vector[..., axis] for axis in range(vector.shape[-1])]
+    return reduce(lambda total, each: total + each * each, components[1:], components[0] ** 2)
 
 
 def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:

@@ -2,19 +2,25 @@
 
 from collections.abc import Callable, Sequence
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, UInt32
 
+from jaxleas.geometry.angles import sine_cosine
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.huge_pages import hold_in_huge_pages
 from jaxleas.types.compute_once import compute_once
 from jaxleas.types.errors import InputError
 
 # No ground. Far below every robot, so that a height relative to any root stays below
 # conditions.VOID_IN_ROOT, and finite, so that no NaN can enter the training arithmetic.
 VOID = -1.0e4
+
+_ROUND = 12582912.0  # 1.5 * 2^23: added to a float32, it leaves a whole number in the last bits
+_ROUND_BITS = 0x4B400000  # its own bits
 
 
 @struct.dataclass
@@ -81,9 +87,11 @@ class Atlas:
         """
         _, rows, columns = self.heights.shape
         cells_per_metre = 1.0 / self.resolution
-        corner = (position[..., :2] - self.origin[map_index]) * cells_per_metre + 0.5
-        cosine, sine = jnp.cos(yaw) * cells_per_metre, jnp.sin(yaw) * cells_per_metre
-        first = map_index * (rows * columns)
+        cell = (position[..., :2] - self.origin[map_index]) * cells_per_metre
+        sine, cosine = (each * cells_per_metre for each in sine_cosine(yaw))
+        # What the bits of a shifted row and column hold beside their numbers is taken off here.
+        first = map_index.astype(jnp.uint32) * jnp.uint32(rows * columns)
+        first -= jnp.uint32(_ROUND_BITS * (columns + 1) % 2**32)
         ahead, left = (
             jnp.asarray(points_in_root[:, axis], jnp.float32).reshape((1,) * yaw.ndim + (-1,))
             for axis in (0, 1)
@@ -91,15 +99,29 @@ class Atlas:
 
         def gather(heights: Array, *robot: Array) -> Array:
             x, y, z, cosine, sine, first = (each[..., None] for each in robot[:6])
-            # Clamped before it is cut down to a whole number: no floor needed, none out of range.
-            column = jnp.clip(x + cosine * ahead - sine * left, 0.0, columns - 1.0)
-            row = jnp.clip(y + sine * ahead + cosine * left, 0.0, rows - 1.0)
-            index = first + row.astype(jnp.int32) * columns + column.astype(jnp.int32)
-            found = heights.reshape(-1).at[index].get(mode="promise_in_bounds")
+            column = _nearest(x + cosine * ahead - sine * left, columns)
+            row = _nearest(y + sine * ahead + cosine * left, rows)
+            index = first + row * jnp.uint32(columns) + column
+            found = (
+                heights.reshape(-1)
+                .at[index]
+                .get(mode="promise_in_bounds", wrap_negative_indices=False)
+            )
             return then(found - z, *robot[6:])
 
-        robot = (corner[..., 0], corner[..., 1], position[..., 2], cosine, sine, first)
+        robot = (cell[..., 0], cell[..., 1], position[..., 2], cosine, sine, first)
         return compute_once(gather, self.always, self.heights, *robot, *numbers)
+
+
+def _nearest(cell: Float[Array, "*batch"], count: int) -> UInt32[Array, "*batch"]:
+    """Return the nearest of the cells 0..count - 1, plus `_ROUND_BITS`.
+
+    As clip, round and a cast would, in a third of the instructions: these look after NaN and after
+    what no integer holds.
+    """
+    cell = jnp.where(cell > 0.0, cell, 0.0)
+    cell = jnp.where(cell < count - 1.0, cell, count - 1.0)
+    return jax.lax.bitcast_convert_type(cell + _ROUND, jnp.uint32)
 
 
 def make_atlas(maps: Sequence[HeightMap]) -> Atlas:
@@ -125,4 +147,6 @@ def make_atlas(maps: Sequence[HeightMap]) -> Atlas:
         inner = padded[border : border + each.heights.shape[0], border:]
         inner[:, : each.heights.shape[1]] = np.where(np.isnan(each.heights), VOID, each.heights)
     origin = np.array([each.origin for each in maps], dtype=np.float32) - border * resolution
-    return Atlas(heights=jnp.asarray(heights), origin=jnp.asarray(origin), resolution=resolution)
+    on_device = jnp.asarray(heights)
+    hold_in_huge_pages(on_device)
+    return Atlas(heights=on_device, origin=jnp.asarray(origin), resolution=resolution)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
@@ -85,4 +86,23 @@ def dense(params: Any, hidden: Float[Array, "*batch size"], activation: str) -> 
 
 
 def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
-    return hidden @ kernel + bias.reshape((1,) * (hidden.ndim - 1) + bias.shape)
+    return product(hidden, kernel) + bias.reshape((1,) * (hidden.ndim - 1) + bias.shape)
+
+
+@jax.custom_vjp
+def product(
+    rows: Float[Array, "*batch inputs"], kernel: Float[Array, "inputs outputs"]
+) -> Float[Array, "*batch outputs"]:
+    """Return rows @ kernel."""
+    return rows @ kernel
+
+
+def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
+    rows, kernel = kept
+    batch = tuple(range(rows.ndim - 1))
+    # In this order: JAX's own is its transpose, for which XLA:CPU turns the whole gradient round.
+    of_kernel = jax.lax.dot_general(rows, gradient, ((batch, batch), ((), ())))
+    return gradient @ kernel.T, of_kernel
+
+
+product.defvjp(lambda rows, kernel: (rows @ kernel, (rows, kernel)), _product_backward)

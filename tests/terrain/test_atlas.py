@@ -1,9 +1,13 @@
+import re
+from pathlib import Path
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from jaxleas.terrain.atlas import VOID, make_atlas
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.huge_pages import hold_in_huge_pages
 from jaxleas.types import InputError
 
 
@@ -44,3 +48,23 @@ def test_maps_of_different_resolution_are_refused():
 def test_an_empty_atlas_is_refused():
     with pytest.raises(InputError, match="at least one"):
         make_atlas([])
+
+
+def test_a_large_array_keeps_its_numbers_in_large_pages():
+    numbers = np.arange(2_000_000, dtype=np.float32)
+    array = jnp.asarray(numbers)
+    if not hold_in_huge_pages(array):
+        pytest.skip("no large pages here")
+    np.testing.assert_array_equal(array, numbers)
+    address, size, large = array.unsafe_buffer_pointer(), 0, 0
+    for line in Path("/proc/self/smaps").read_text().splitlines():
+        if re.match(r"[0-9a-f]+-[0-9a-f]+ ", line):
+            first, last = (int(each, 16) for each in line.split()[0].split("-"))
+            size = last - first if first < address + array.nbytes and last > address else 0
+        elif size and line.startswith("AnonHugePages"):
+            large += int(line.split()[1])
+    assert large >= 4096  # KiB, of 7812: the ends need not fill a page
+
+
+def test_a_small_array_is_left_alone():
+    assert not hold_in_huge_pages(jnp.zeros(10))

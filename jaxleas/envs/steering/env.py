@@ -1,5 +1,6 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -150,6 +151,21 @@ class SteeringEnv:
         after, verdict = self.advance(atlas, params, state, action)
         return after, Outcome(**vars(verdict), observation=self.look(atlas, after))
 
+    def _judge_all(
+        self, atlas: Atlas, state: SteeringState, motion: RootMotion
+    ) -> tuple[Float[Array, "*batch"], Any]:
+        """Return the margin of all that can end an episode, and the foresight's memory."""
+        judged, foresight, memory = self._judged, self.foresight, state.memory
+        around = partial(
+            atlas.heights_around, state.plan.map_index, motion.position, motion.yaw, judged
+        )
+        if foresight is None:
+            # In the pass over the heights: whoever asks for the margin would judge them anew.
+            return around(lambda heights: self._judge(heights, motion)), memory
+        heights = around()
+        foreseen, memory = foresight.follow(memory, heights, motion)
+        return jnp.minimum(self._judge(heights, motion), foreseen), memory
+
     def advance(
         self,
         atlas: Atlas,
@@ -172,19 +188,12 @@ class SteeringEnv:
             return command, integrate(motion, command, config.limits)
 
         command, motion = compute_once(move, atlas.always, state.motion, action)
-        heights = atlas.heights_around(
-            state.plan.map_index, motion.position, motion.yaw, self._judged
-        )
-        margin = self._judge(heights, motion)
-        memory = state.memory
-        if self.foresight is not None:
-            foreseen, memory = self.foresight.follow(memory, heights, motion)
-            margin = jnp.minimum(margin, foreseen)
+        margin, memory = self._judge_all(atlas, state, motion)
         valid = margin >= 0.0
 
         toward, distance = direction_to_goal(motion, self.goal(state))
         reached = distance <= config.goal_radius
-        gained = reward(params, config, motion, command, toward, valid.astype(heights.dtype))
+        gained = reward(params, config, motion, command, toward, valid.astype(margin.dtype))
 
         age = state.goal_age + 1
         replaced = reached | (age >= _pick(state.plan.goal_steps, state.goal_index))
@@ -207,10 +216,13 @@ class SteeringEnv:
 
 def _pick(values: Array, index: Int[Array, "*batch"]) -> Array:
     """Return entry `index` along the goals' axis (the first after the batch axes)."""
-    # A sum over GOALS masked entries: cheaper on every backend than a gather of one each.
-    mask = jax.nn.one_hot(index, GOALS, dtype=bool)
-    mask = mask.reshape(mask.shape + (1,) * (values.ndim - mask.ndim))
-    return jnp.sum(jnp.where(mask, values, jnp.zeros_like(values)), axis=index.ndim)
+    # A choice between GOALS entries: cheaper on every backend than a gather of one each.
+    entries = [values[(slice(None),) * index.ndim + (number,)] for number in range(GOALS)]
+    which = index.reshape(index.shape + (1,) * (entries[0].ndim - index.ndim))
+    picked = entries[0]
+    for number, entry in enumerate(entries[1:], start=1):
+        picked = jnp.where(which == number, entry, picked)
+    return picked
 
 
 def select(flag: Array, chosen: SteeringState, other: SteeringState) -> SteeringState:

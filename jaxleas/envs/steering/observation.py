@@ -6,7 +6,8 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import MOTION_SIZE
-from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
+from jaxleas.geometry.angles import bearing
+from jaxleas.geometry.rotations import rotate_by_yaw, squared_length
 from jaxleas.types import RootMotion
 
 MOST_SURFACES = 8.0  # around a robot, about: on rubble
@@ -17,7 +18,7 @@ def direction_to_goal(
 ) -> tuple[Float[Array, "*batch 2"], Float[Array, "*batch"]]:
     """Return the horizontal unit vector to the goal (zero at the goal) and its distance [m]."""
     offset = goal - motion.position[..., :2]
-    distance = jnp.sqrt(jnp.sum(offset * offset, axis=-1))
+    distance = jnp.sqrt(squared_length(offset))
     return offset / jnp.maximum(distance, 1e-6)[..., None], distance
 
 
@@ -31,7 +32,8 @@ def seen_motion(motion: RootMotion, goal: Float[Array, "*batch 2"]) -> tuple[Arr
         goal: in the world [m].
     """
     toward, _ = direction_to_goal(motion, goal)
-    angle = wrap_angle(jnp.arctan2(toward[..., 1], toward[..., 0]) - motion.yaw)
+    toward_in_root = rotate_by_yaw(toward, -motion.yaw)
+    angle = bearing(toward_in_root[..., 0], toward_in_root[..., 1])
     velocity_in_root = rotate_by_yaw(motion.velocity, -motion.yaw)
     return velocity_in_root[..., 0], velocity_in_root[..., 1], velocity_in_root[..., 2], angle
 
@@ -49,11 +51,11 @@ def write_observation(
         seen: of motion and goal.
         height_range: z_min and z_max, between which heights are clipped [m].
     """
-    observation = jnp.clip(columns, *height_range)
-    number = jnp.arange(columns.shape[-1]).reshape((1,) * (columns.ndim - 1) + (-1,))
-    for index, value in enumerate(seen):
-        observation = jnp.where(number == index, value[..., None], observation)
-    return observation
+    low, high = height_range
+    # Chosen, not clipped: heights are finite, and `clip` looks after NaN at twice the price.
+    observation = jnp.where(columns > low, columns, low)
+    observation = jnp.where(observation < high, observation, high)
+    return observation.at[..., :MOTION_SIZE].set(jnp.stack(seen, axis=-1))
 
 
 def affine_scaling(

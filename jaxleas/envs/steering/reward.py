@@ -6,6 +6,8 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.config import RewardWeights, SteeringConfig
+from jaxleas.geometry.angles import sine_cosine
+from jaxleas.geometry.rotations import squared_length
 from jaxleas.types import RootMotion
 
 
@@ -50,11 +52,15 @@ def reward(
         valid: 1 where the configuration satisfies the conditions, else 0.
     """
     limits = config.limits
-    error = motion.velocity.at[..., :2].add(-config.desired_speed * toward_goal)
-    direction = -jnp.sum(error * error, axis=-1) / (2.0 * limits.max_speed) ** 2
-    heading = jnp.cos(motion.yaw) * toward_goal[..., 0] + jnp.sin(motion.yaw) * toward_goal[..., 1]
+    desired = config.desired_speed * toward_goal
+    error = motion.velocity - jnp.stack(
+        [desired[..., 0], desired[..., 1], jnp.zeros_like(valid)], axis=-1
+    )
+    direction = -squared_length(error) / (2.0 * limits.max_speed) ** 2
+    sine, cosine = sine_cosine(motion.yaw)
+    heading = cosine * toward_goal[..., 0] + sine * toward_goal[..., 1]
     turn = -jnp.square(command[..., 3] / limits.max_turn_rate)
-    square = jnp.sum(command[..., :3] * command[..., :3], axis=-1)
+    square = squared_length(command[..., :3])
     return (
         params.direction * direction
         + params.orientation * (heading - 1.0)

@@ -90,7 +90,10 @@ def draw_picks(
     pool: StartPool, key: Key[Array, ""], shape: tuple[int, ...]
 ) -> Int[Array, "*shape"]:
     """Return indices of valid candidates, each as likely as any other."""
-    return pool.order[jax.random.randint(key, shape, 0, jnp.maximum(pool.valid_count, 1))]
+    # By one random number each, where `randint` takes two; what it is off by is one in 2^13.
+    count = jnp.maximum(pool.valid_count, 1)
+    place = jax.random.uniform(key, shape) * count.astype(jnp.float32)
+    return pool.order[jnp.minimum(place.astype(jnp.int32), count - 1)]
 
 
 def restart_where(
