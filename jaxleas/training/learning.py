@@ -46,16 +46,18 @@ def make_learn(
         key: Array,
     ):
         optimiser = make_optimiser(ppo, numbers)
+        images, last = mirror_images(env, batch, last_observation, ppo.mirror)
+        images = replace(images, observation=normalise(images.observation, normaliser))
+        last = normalise(last, normaliser)
 
         def minibatch_step(carry, inputs):
             params, moments = carry
             chosen, flip, noise = inputs
-            minibatch, last = divide_robots(take_robots(env, batch, last_observation, chosen, flip))
-            minibatch = replace(minibatch, observation=normalise(minibatch.observation, normaliser))
+            minibatch, seen_last = divide_robots(take_robots(images, last, chosen, flip))
             gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
                 params,
                 minibatch,
-                normalise(last[0], normaliser),
+                seen_last[0],
                 noise,
                 numbers,
                 config.network.activation,
@@ -81,46 +83,69 @@ def make_learn(
     return learn
 
 
-def take_robots(
+def mirror_images(
     env: SteeringEnv,
     batch: Experience,
     last_observation: Float[Array, "robots size"],
-    chosen: Int[Array, " some"],
-    flip: Bool[Array, " some"],
-) -> tuple[Experience, Float[Array, "1 some size"]]:
-    """Return some of the robots, with left and right swapped for some of these.
+    mirror: bool = True,
+) -> tuple[Experience, Float[Array, "1 images robots size"]]:
+    """Return what was walked and its mirror image, left and right swapped.
 
     The task is symmetric, so a mirrored step is as good as a walked one; its probability under the
-    old policy is taken to be the original's, exact once the policy is symmetric.
+    old policy is taken to be the original's, exact once the policy is symmetric. Mirrored once an
+    update: a minibatch then takes whole rows. It takes them twice, as XLA:CPU computes them anew
+    where they are needed turned round, so it must be cheap.
 
     Args:
         env: the task.
         batch: of all robots.
         last_observation: of all robots, after the last step.
-        chosen: the robots to take.
-        flip: which of them are mirrored.
+        mirror: whether there is to be an image.
 
     Returns:
-        What they walked, and what they see in the end with an axis of time, too: of one step.
+        The batch [time, images, robots, ...], as walked and then mirrored, and what the robots see
+        in the end with an axis of time, too: of one step.
     """
-    mirrored = jnp.asarray(env.layout.mirror_permutation, jnp.int32)
-    column = jnp.where(flip[:, None], mirrored[None], jnp.arange(env.layout.size)[None])
-    sign = jnp.where(flip[:, None], jnp.asarray(env.layout.mirror_sign)[None], 1.0)[None]
-    action_sign = jnp.where(flip[:, None], jnp.asarray(MIRROR_ACTION_SIGN)[None], 1.0)[None]
+    if not mirror:
+        return jax.tree.map(lambda leaf: leaf[:, None], (batch, last_observation[None]))
+    order = jnp.asarray(env.layout.mirror_permutation, jnp.int32)
+    sign = jnp.asarray(env.layout.mirror_sign).reshape(1, 1, -1)
+    action_sign = jnp.asarray(MIRROR_ACTION_SIGN).reshape(1, 1, -1)
 
-    def observed(whole: Array) -> Array:
-        # Robots and columns in one gather: a second pass over the rows costs as much again.
-        found = whole.at[:, chosen[:, None], column].get(mode="promise_in_bounds")
-        return found * sign
+    def seen(whole: Array) -> Array:
+        return jnp.stack([whole, whole.at[..., order].get(mode="promise_in_bounds") * sign], axis=1)
 
-    taken = jax.tree.map(
-        lambda leaf: leaf.at[:, chosen].get(mode="promise_in_bounds"),
-        replace(batch, observation=batch.reward),
+    def done(action: Array) -> Array:
+        return jnp.stack([action, action * action_sign], axis=1)
+
+    twice = jax.tree.map(
+        lambda leaf: jnp.stack([leaf, leaf], axis=1), replace(batch, observation=batch.reward)
     )
-    some = replace(
-        taken,
-        observation=observed(batch.observation),
-        raw_action=taken.raw_action * action_sign,
-        location=taken.location * action_sign,
+    images = replace(
+        twice,
+        observation=seen(batch.observation),
+        raw_action=done(batch.raw_action),
+        location=done(batch.location),
     )
-    return some, observed(last_observation[None])
+    return images, seen(last_observation[None])
+
+
+def take_robots(
+    images: Experience,
+    last_observation: Float[Array, "1 images robots size"],
+    chosen: Int[Array, " some"],
+    flip: Bool[Array, " some"],
+) -> tuple[Experience, Float[Array, "1 some size"]]:
+    """Return some of the robots, mirrored or as they walked.
+
+    Args:
+        images: of the batch.
+        last_observation: of all robots, after the last step, likewise.
+        chosen: the robots to take.
+        flip: which of them are mirrored.
+    """
+    which = flip.astype(jnp.int32)
+    return jax.tree.map(
+        lambda leaf: leaf.at[:, which, chosen].get(mode="promise_in_bounds"),
+        (images, last_observation),
+    )

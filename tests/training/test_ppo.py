@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.training.config import RunConfig
-from jaxleas.training.learning import take_robots
+from jaxleas.training.learning import mirror_images, take_robots
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import make_networks
 from jaxleas.training.ppo import make_train_step
@@ -131,11 +131,12 @@ def test_mirroring_flips_whole_robots_and_twice_is_none():
     last = jax.random.normal(key, (1, 32, env.layout.size))
     flip = jax.random.bernoulli(jax.random.key(3), 0.5, (32,))
     everybody = jnp.arange(32)
-    once = take_robots(env, batch, last[0], everybody, flip)
-    twice = take_robots(env, once[0], once[1][0], everybody, flip)
+    images = mirror_images(env, batch, last[0])
+    once = take_robots(*images, everybody, flip)
+    twice = take_robots(*mirror_images(env, once[0], once[1][0]), everybody, flip)
     jax.tree.map(np.testing.assert_array_equal, twice, (batch, last))
     some = jnp.array([7, 3, 30])
-    few = take_robots(env, batch, last[0], some, flip[some])
+    few = take_robots(*images, some, flip[some])
     jax.tree.map(
         lambda of_few, of_all: np.testing.assert_array_equal(of_few, of_all[:, some]), few, once
     )
