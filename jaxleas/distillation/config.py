@@ -7,11 +7,8 @@ from pydantic import AfterValidator, Field, JsonValue
 
 from jaxleas.surrogates.fit import FitSettings
 from jaxleas.training.config import RunConfig
+from jaxleas.types.bounds import Count, NonNegative, Positive, Seed, Whole
 from jaxleas.types.strict import Strict
-
-Count = Annotated[int, Field(ge=1)]
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
 
 Observation = Literal["thesis144", "thesis145", "icra81"]
 RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]
@@ -47,7 +44,7 @@ class PracticeConfig(Strict):
 
     steps: Count = 2_000_000
     """Environment steps a round."""
-    steps_before: Annotated[int, Field(ge=0)] = 0
+    steps_before: Whole = 0
     """Environment steps before the first round, without surrogate: to get used to another reward,
     speed or observation."""
     learning_rate: Positive = 2e-4
@@ -68,7 +65,7 @@ class FaithfulConfig(Strict):
 
     robots: Count = 128
     """That walk a whole episode at once, a wave."""
-    ahead: Annotated[int, Field(ge=0)] = 1
+    ahead: Whole = 1
     """Waves that are walked while another is judged: 0 keeps the device waiting for the planner,
     more make what is learned from older."""
 
@@ -94,7 +91,7 @@ class DistillationConfig(Strict):
     """At most; it ends earlier when the exact success stops rising."""
     patience: Count = 2
     """Rounds without a rise after which it ends."""
-    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
+    seed: Seed = 0
     """Of the guide paths and the fits."""
     run: RunConfig = RunConfig()
     """Of the policy to begin with, where none is given, and the base of every round's practice."""

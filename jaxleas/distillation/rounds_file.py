@@ -5,13 +5,11 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from jaxleas.evaluation.result_file import Fraction
 from jaxleas.files import read_json, require_version, typed
+from jaxleas.types.bounds import Count, Fraction, NonNegative, Whole
 from jaxleas.types.errors import InputError
 
 VERSION = 1
-Whole = Annotated[int, Field(ge=0)]
-Amount = Annotated[float, Field(ge=0.0)]
 
 
 class _Confusion(BaseModel):
@@ -27,15 +25,15 @@ class _Confusion(BaseModel):
 class _Part(BaseModel):
     """What a surrogate is worth, by stretch or by guide path."""
 
-    count: Annotated[int, Field(ge=1)]
+    count: Count
     failed: Whole
     balanced_accuracy: Fraction
     area_under_curve: Fraction
     calibration_error: Fraction
-    log_loss: Amount
-    log_loss_of_the_share: Amount
+    log_loss: NonNegative
+    log_loss_of_the_share: NonNegative
     confusion: _Confusion
-    curve: Annotated[list[tuple[Fraction, Fraction, Amount]], Field(min_length=1)]
+    curve: Annotated[list[tuple[Fraction, Fraction, NonNegative]], Field(min_length=1)]
 
 
 class _Report(BaseModel):
@@ -48,7 +46,7 @@ class _Row(BaseModel):
     success: Fraction
     cells: Annotated[dict[str, Fraction], Field(min_length=1)]
     labels: Whole
-    seconds: dict[str, Amount]
+    seconds: dict[str, NonNegative]
     surrogate: _Report | None
 
 

@@ -5,8 +5,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from jaxleas.evaluation.result_file import Count, Fraction, Length
 from jaxleas.files import read_typed, write_json
+from jaxleas.types.bounds import Count, Fraction, NonNegative
 from jaxleas.types.strict import Strict
 
 
@@ -25,13 +25,13 @@ class StepRow(Strict):
     """95 % interval (Wilson) of `planned`."""
     undecided: Fraction | None = None
     """Of all starts: the planner ran out of time; counted as not planned."""
-    mean_step: Length | None
+    mean_step: NonNegative | None
     """Of the root from one kept configuration to the next, over the paths that reached [m]."""
-    steps: Length | None
+    steps: NonNegative | None
     """Mean number of them."""
-    seconds: Length | None
+    seconds: NonNegative | None
     """Planning, mean over the paths that succeeded [s]."""
-    slowest: Length | None
+    slowest: NonNegative | None
     """The longest of them [s]."""
 
 
@@ -43,7 +43,7 @@ class HeightBand(Strict):
     low: tuple[float | None, ...]
     mean: tuple[float | None, ...]
     high: tuple[float | None, ...]
-    clearance: Length | None
+    clearance: NonNegative | None
     """Mean distance of the root from the ground below it [m]."""
 
 

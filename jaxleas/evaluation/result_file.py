@@ -2,18 +2,16 @@
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from jaxleas.files import read_json, require_version, typed, write_json
+from jaxleas.types.bounds import Count, Fraction, NonNegative
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
 VERSION = 1
-Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
-Length = Annotated[float, Field(ge=0.0)]
-Count = Annotated[int, Field(ge=1)]
 
 
 class AreaResult(Strict):
@@ -30,9 +28,9 @@ class CellResult(Strict):
     name: str
     yaw: float
     """Heading at the start relative to the direction of crossing [deg]."""
-    yaw_spread: Length = 0.0
+    yaw_spread: NonNegative = 0.0
     """Headings are uniform in `yaw` +- this, to either side [deg]."""
-    speed: Length = 0.0
+    speed: NonNegative = 0.0
     """At the start, along the heading [m/s]."""
     method: str
     """"leas_p1", "rb_lin", "rb_kino", ..."""
@@ -51,7 +49,7 @@ class CellResult(Strict):
     """The goal was reached and the planner made contacts for the whole guide path."""
     robustness: float | None = None
     """Mean over the postures of a contact plan, mean over the plans that succeeded [N]."""
-    mean_step: Length | None = None
+    mean_step: NonNegative | None = None
     """Way of the root for each step, mean over the plans that succeeded [m]."""
     undecided: Fraction | None = None
     """The planner ran out of time; counted as not planned."""
@@ -61,13 +59,13 @@ class CellResult(Strict):
     expectation: Literal["cross", "stop"] = "cross"
     """"cross": the main fraction is `planned` where a planner judged, else `reached`; "stop": it
     is 1 - `invalid`."""
-    mean_time: Length | None = None
+    mean_time: NonNegative | None = None
     """To the goal, of those that reached it [s]."""
-    mean_length: Length | None = None
+    mean_length: NonNegative | None = None
     """Of the paths of those that reached the goal [m]."""
-    detour: Length | None = None
+    detour: NonNegative | None = None
     """Mean path length relative to straight lines, of those that reached the goal."""
-    waypoints: Length | None = None
+    waypoints: NonNegative | None = None
     """Mean number of waypoints between start and goal, of those that reached it by a roadmap."""
     areas: dict[str, AreaResult] = Field(default_factory=dict)
     """By start area: "near" and "far" of the transition."""
@@ -116,7 +114,7 @@ class Evaluation(Strict):
     seed: int
     created: str
     """ISO 8601, UTC."""
-    seconds: Length | None = None
+    seconds: NonNegative | None = None
     """Wall time of the judging [s]."""
     cells: tuple[CellResult, ...]
 

@@ -5,10 +5,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
 
+from jaxleas.types.bounds import Count, Seed
 from jaxleas.types.strict import Strict
 
-Count = Annotated[int, Field(ge=1)]
-Seed = Annotated[int, Field(ge=0, lt=2**31)]
 Scalar = bool | int | float | str
 
 

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, PositiveFloat, model_validator
 
+from jaxleas.types.bounds import Fraction
 from jaxleas.types.strict import Strict
 
 
@@ -16,13 +17,12 @@ def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
 
 
 Interval = Annotated[tuple[PositiveFloat, PositiveFloat], AfterValidator(_ordered)]
-Probability = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
 class ObstaclesConfig(Strict):
     """Boxes on initial tiles."""
 
-    probability: Probability = 0.5
+    probability: Fraction = 0.5
     """that an initial tile carries boxes"""
     count: Annotated[int, Field(ge=1, le=4)] = 1
     """boxes a tile, each in a quarter of its own"""
@@ -48,12 +48,12 @@ class RubbleConfig(Strict):
 class BridgeConfig(Strict):
     """Transition over one rectangle, level or sloped."""
 
-    wide_probability: Probability = 0.3
+    wide_probability: Fraction = 0.3
     wide: Interval = (1.8, 2.0)
     """width of a wide bridge [m]"""
     narrow: Interval = (0.30, 0.45)
     """width of a narrow bridge [m]"""
-    sloped_probability: Probability = 0.5
+    sloped_probability: Fraction = 0.5
     """that a bridge into the empty climbs or falls"""
     rise: PositiveFloat = 0.15
     """largest climb or fall of a bridge into the empty [m]"""
@@ -72,7 +72,7 @@ class StairsConfig(Strict):
     """highest single step [m]: a robot of Talos's size climbs it"""
     slope_max: PositiveFloat = 0.65
     """climb over run of stairs between landings: 33 degrees, as steep as buildings have"""
-    landing_probability: Probability = 0.3
+    landing_probability: Fraction = 0.3
     """that the steps do not fill the tile: fewer, higher ones between two flat landings"""
 
 
@@ -103,15 +103,15 @@ class GeneratorConfig(Strict):
     """edge of a tile [m]"""
     inset: Annotated[float, Field(ge=0.0, le=0.02)] = 0.01
     """by which every contact rectangle is smaller a side [m]"""
-    transition_probability: Probability = 0.8
+    transition_probability: Fraction = 0.8
     """that an initial tile is followed by a transition; else by another initial tile"""
-    dead_end_probability: Probability = 0.3
+    dead_end_probability: Fraction = 0.3
     """that a transition which cannot be continued is built all the same, and leads nowhere"""
-    detour_probability: Probability = 0.0
+    detour_probability: Fraction = 0.0
     """that a transition into the empty is a hole or a wall; the thesis's generator has none"""
-    stairs_probability: Probability = 0.55
+    stairs_probability: Fraction = 0.55
     """that a transition into the empty is stairs"""
-    bridge_probability: Probability = 0.30
+    bridge_probability: Fraction = 0.30
     """that a transition into the empty is a bridge; what is left is rubble"""
     bridge_only_below: PositiveFloat = 0.15
     """two initial tiles of a smaller height difference are joined by a bridge [m]"""

@@ -7,12 +7,8 @@ from pydantic import Field, model_validator
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.seeds import MAX_TRAINING_SEED
+from jaxleas.types.bounds import Count, Fraction, NonNegative, Positive, Seed
 from jaxleas.types.strict import Strict
-
-Count = Annotated[int, Field(ge=1)]
-Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
 
 
 class LinkShares(Strict):
@@ -145,7 +141,7 @@ class FinalConfig(Strict):
 class RunConfig(Strict):
     """One experiment."""
 
-    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
+    seed: Seed = 0
     """Of everything random in training except the terrain."""
     watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
     """Who is told the metrics, beside metrics.jsonl; wandb and mlflow are extras."""

@@ -5,10 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.types.bounds import Count, Fraction, NonNegative, Positive
 from jaxleas.types.strict import Strict
-
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
 
 
 class MotionLimits(Strict):
@@ -58,14 +56,14 @@ class SteeringConfig(Strict):
     """Speed at which the root should move towards the goal, v_desired [m/s]."""
     goal_radius: Positive = 0.2
     """The goal is reached within this distance [m] (T sec. 3.4.2)."""
-    episode_steps: Annotated[int, Field(ge=1)] = 250
+    episode_steps: Count = 250
     """An episode is cut here [steps]. The thesis has 800: most of it is standing at dead ends, and
     what is hard, turning and setting foot on the transition, happens in the first hundred."""
-    near_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    near_share: Fraction = 0.5
     """Share of episodes that begin right before what is to be crossed, where turning is hardest."""
-    wander_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
+    wander_share: Fraction = 0.2
     """Share of episodes that begin with a random goal, as all do once their link is crossed."""
-    goal_steps: tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]] = (200, 800)
+    goal_steps: tuple[Count, Count] = (200, 800)
     """A goal lasts a random number of steps in this range, or until it is reached."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
