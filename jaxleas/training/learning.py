@@ -8,15 +8,18 @@ import jax
 import jax.numpy as jnp
 import optax
 from jax import Array
+from jax.flatten_util import ravel_pytree
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
+from jaxleas.training.adam import descend
 from jaxleas.training.config import RunConfig
 from jaxleas.training.loss import Experience, ppo_loss
 from jaxleas.training.networks import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import TrainState, make_optimiser
+from jaxleas.training.train_state import TrainState, learning_rate
+from jaxleas.types.compute_once import compute_once
 
 
 def make_learn(
@@ -45,7 +48,8 @@ def make_learn(
         numbers: PpoParams,
         key: Array,
     ):
-        optimiser = make_optimiser(ppo, numbers)
+        rate = learning_rate(ppo, numbers)
+        always = state.update >= 0  # the compiler does not know
         images, last = mirror_images(env, batch, last_observation, ppo.mirror)
         images = replace(images, observation=normalise(images.observation, normaliser))
         last = normalise(last, normaliser)
@@ -53,7 +57,7 @@ def make_learn(
         def minibatch_step(carry, inputs):
             params, moments = carry
             chosen, flip, noise = inputs
-            minibatch, seen_last = divide_robots(take_robots(images, last, chosen, flip))
+            minibatch, seen_last = divide_robots(take_robots(images, last, chosen, flip, always))
             gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
                 params,
                 minibatch,
@@ -61,10 +65,13 @@ def make_learn(
                 noise,
                 numbers,
                 config.network.activation,
+                always,
             )
-            updates, moments = optimiser.update(gradient, moments, params)
-            metrics["gradient_norm"] = optax.global_norm(gradient)
-            return (optax.apply_updates(params, updates), moments), metrics
+            vector, as_params = ravel_pytree(gradient)
+            change, moments, metrics["gradient_norm"] = descend(
+                vector, moments, rate, numbers.max_gradient_norm, always
+            )
+            return (optax.apply_updates(params, as_params(change)), moments), metrics
 
         order_key, flip_key, noise_key = jax.random.split(key, 3)
         # Shuffled by robot, not by sample: sorting and gathering whole batches is slow.
@@ -135,6 +142,7 @@ def take_robots(
     last_observation: Float[Array, "1 images robots size"],
     chosen: Int[Array, " some"],
     flip: Bool[Array, " some"],
+    always: Bool[Array, ""],
 ) -> tuple[Experience, Float[Array, "1 some size"]]:
     """Return some of the robots, mirrored or as they walked.
 
@@ -143,9 +151,18 @@ def take_robots(
         last_observation: of all robots, after the last step, likewise.
         chosen: the robots to take.
         flip: which of them are mirrored.
+        always: true, and not known to the compiler.
     """
-    which = flip.astype(jnp.int32)
-    return jax.tree.map(
-        lambda leaf: leaf.at[:, which, chosen].get(mode="promise_in_bounds"),
-        (images, last_observation),
-    )
+    rows = flip.astype(jnp.int32) * images.reward.shape[2] + chosen
+
+    def take(leaf: Array) -> Array:
+        # Row by row: all steps of a robot at once come out with the robots first, to be turned.
+        time, count, robots, *rest = leaf.shape
+        flat = leaf.reshape(time * count * robots, *rest)
+        begin = jnp.arange(time, dtype=jnp.int32)[:, None] * (count * robots)
+        return flat.at[begin + rows].get(mode="promise_in_bounds")
+
+    # Observations apart: the products of the first layers want them as they are and turned round.
+    seen = compute_once(take, always, images.observation)
+    rest = replace(images, observation=images.reward)
+    return replace(jax.tree.map(take, rest), observation=seen), take(last_observation)

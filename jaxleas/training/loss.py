@@ -123,6 +123,7 @@ def ppo_loss(
     noise: Float[Array, "time robots 4"],
     hyper: Any,
     activation: Any,
+    always: Array | None = None,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the loss and its metrics.
 
@@ -133,9 +134,12 @@ def ppo_loss(
         noise: standard normal, to sample the entropy with.
         hyper: with discount, gae_lambda, clip, entropy, value_weight and reward_scale.
         activation: between the networks' layers.
+        always: true, and not known to the compiler (`networks.dense`).
     """
-    location, deviation = action_distribution(dense(params.policy, batch.observation, activation))
-    values = dense(params.value, batch.observation, activation)[..., 0]
+    location, deviation = action_distribution(
+        dense(params.policy, batch.observation, activation, always)
+    )
+    values = dense(params.value, batch.observation, activation, always)[..., 0]
     last_value = dense(jax.lax.stop_gradient(params.value), last_observation, activation)
     targets, advantage = advantages(
         jax.lax.stop_gradient(values),

@@ -1,11 +1,12 @@
 """Actor and critic: Brax's PPO networks over one of two normalisers."""
 
+from functools import partial
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.observation import affine_scaling
@@ -17,6 +18,7 @@ from jaxleas.training.brax_blocks import (
     specs,
 )
 from jaxleas.training.config import NetworkConfig
+from jaxleas.types.compute_once import compute_once
 
 # A constant input has no deviation: without floor and clip it explodes when it first moves.
 MIN_DEVIATION = 1e-2
@@ -77,16 +79,50 @@ def layers_of(params: Any) -> list[tuple[Array, Array]]:
     return [(layers[name]["kernel"], layers[name]["bias"]) for name in names]
 
 
-def dense(params: Any, hidden: Float[Array, "*batch size"], activation: str) -> Array:
-    """Return what a network of Brax's answers to normalised observations."""
+def dense(
+    params: Any,
+    hidden: Float[Array, "*batch size"],
+    activation: str,
+    always: Bool[Array, ""] | None = None,
+) -> Array:
+    """Return what a network of Brax's answers to normalised observations.
+
+    Args:
+        params: of the network.
+        hidden: the observations.
+        activation: between the layers.
+        always: true, and not known to the compiler: keeps the activations apart (`compute_once`)
+            for a gradient, whose products want them turned round.
+    """
     *inner, (kernel, bias) = layers_of(params)
     for inner_kernel, inner_bias in inner:
-        hidden = ACTIVATION[activation](_affine(hidden, inner_kernel, inner_bias))
-    return _affine(hidden, kernel, bias)
+        hidden = _activated(activation, product(hidden, inner_kernel), inner_bias, always)
+    return product(hidden, kernel) + _as_row(bias, hidden)
 
 
-def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
-    return product(hidden, kernel) + bias.reshape((1,) * (hidden.ndim - 1) + bias.shape)
+def _as_row(bias: Array, rows: Array) -> Array:
+    return bias.reshape((1,) * (rows.ndim - 1) + bias.shape)
+
+
+@partial(jax.custom_vjp, nondiff_argnums=(0,))
+def _activated(name: str, rows: Array, bias: Array, always: Array | None) -> Array:
+    def activate(rows: Array, bias: Array) -> Array:
+        return ACTIVATION[name](rows + _as_row(bias, rows))
+
+    return activate(rows, bias) if always is None else compute_once(activate, always, rows, bias)
+
+
+def _activated_backward(name: str, kept: tuple[Array, Array], gradient: Array):
+    rows, bias = kept
+    _, pull = jax.vjp(ACTIVATION[name], rows + _as_row(bias, rows))
+    (of_rows,) = pull(gradient)
+    return of_rows, jnp.sum(of_rows, axis=tuple(range(rows.ndim - 1))), None
+
+
+_activated.defvjp(
+    lambda name, rows, bias, always: (_activated(name, rows, bias, always), (rows, bias)),
+    _activated_backward,
+)
 
 
 @jax.custom_vjp

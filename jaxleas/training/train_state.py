@@ -13,6 +13,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.state import SteeringState
 from jaxleas.envs.steering.world import World
+from jaxleas.training.adam import BETA_1, BETA_2, EPSILON
 from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.networks import Normaliser, initial_normaliser
@@ -89,12 +90,24 @@ def make_optimiser(config: PpoConfig, params: PpoParams) -> optax.GradientTransf
         config: how many gradient steps there will be.
         params: learning rates and longest gradient, constants or traced.
     """
-    gradient_steps = config.updates * config.epochs * config.minibatches
-    rate = optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
     # On one vector: a few operations a step instead of a few for each layer.
     return optax.flatten(
-        optax.chain(optax.clip_by_global_norm(params.max_gradient_norm), optax.adam(rate, eps=1e-5))
+        optax.chain(
+            optax.clip_by_global_norm(params.max_gradient_norm),
+            optax.adam(learning_rate(config, params), b1=BETA_1, b2=BETA_2, eps=EPSILON),
+        )
     )
+
+
+def learning_rate(config: PpoConfig, params: PpoParams) -> optax.Schedule:
+    """Return the falling learning rate, a function of the gradient steps done.
+
+    Args:
+        config: how many gradient steps there will be.
+        params: the rates at start and end, constants or traced.
+    """
+    gradient_steps = config.updates * config.epochs * config.minibatches
+    return optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
 
 
 def fresh_networks(

@@ -1,0 +1,41 @@
+"""Adam written out is optax's."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import optax
+import pytest
+from jax.flatten_util import ravel_pytree
+
+from jaxleas.training.adam import descend
+from jaxleas.training.config import PpoConfig, RunConfig
+from jaxleas.training.ppo_params import PpoParams
+from jaxleas.training.train_state import learning_rate, make_optimiser
+
+WEIGHTS = {"kernel": jnp.ones((5, 3)), "bias": jnp.zeros(3)}
+
+
+@pytest.mark.parametrize("longest", [0.5, 100.0])  # shortened always, never
+def test_steps_are_those_of_optax(longest):
+    config = PpoConfig(steps=128, environments=16, unroll=1, minibatches=2, epochs=1)
+    numbers = PpoParams.of(RunConfig(ppo=config)).replace(max_gradient_norm=longest)
+    optimiser = make_optimiser(config, numbers)
+    state = expected_state = optimiser.init(WEIGHTS)
+    weights = expected = WEIGHTS
+    rate = learning_rate(config, numbers)
+    step = jax.jit(lambda vector, state, yes: descend(vector, state, rate, longest, yes))
+    for key in jax.random.split(jax.random.key(0), 20):  # 16 fall, then the rate stays
+        gradient = jax.tree.map(lambda leaf: jax.random.normal(key, leaf.shape), WEIGHTS)
+        updates, expected_state = optimiser.update(gradient, expected_state, expected)
+        expected = optax.apply_updates(expected, updates)
+        vector, as_weights = ravel_pytree(gradient)
+        change, state, norm = step(vector, state, jnp.bool_(True))
+        weights = optax.apply_updates(weights, as_weights(change))
+        np.testing.assert_allclose(norm, optax.global_norm(gradient), rtol=1e-6)
+        for found, wanted in zip(
+            jax.tree.leaves((weights, state)),
+            jax.tree.leaves((expected, expected_state)),
+            strict=True,
+        ):
+            np.testing.assert_allclose(found, wanted, rtol=1e-4, atol=1e-8)
+    assert jax.tree.structure(state) == jax.tree.structure(expected_state)
