@@ -35,7 +35,7 @@ def descend(
     clipping, (moments, schedule) = state
     count = optax.safe_increment(moments.count)
 
-    def numbers(squares: Array, count: Array, done: Array) -> tuple[Array, ...]:
+    def numbers(squares: Array, count: Array, done: Array):
         norm = jnp.sqrt(squares)
         shortened = jnp.where(norm < max_norm, 1.0, max_norm / norm)
         root = jnp.sqrt(1.0 - BETA_2**count)

@@ -5,7 +5,7 @@ many devices there are, but for the order in which sums over robots are rounded.
 """
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
@@ -59,16 +59,26 @@ class Devices:
         layout: Any = {name: self.divided if name in DIVIDED else self.whole for name in names}
         return TrainState(**layout)
 
-    def divide_robots(self, minibatch: Tree) -> Tree:
-        """Divide a minibatch [time, robots, ...] by robot, so that each device learns from a part.
+    def share(
+        self, function: Callable[..., Any], robot_axes: Sequence[int | None]
+    ) -> Callable[..., Any]:
+        """Return a function that every device computes for its own robots.
 
-        Without it the compiler gathers a shuffled minibatch on every device, and all of them
-        compute the same gradient.
+        Left to the compiler each minibatch is gathered on every device, and each of the gradient's
+        arrays summed by itself.
+
+        Args:
+            function: must return the same on each device.
+            robot_axes: of each argument the axis along which its arrays have one entry a robot or
+                group of robots; None: every device has the whole.
         """
-        if len(self) == 1:
-            return minibatch
-        by_robot = NamedSharding(self.mesh, PartitionSpec(None, AXIS))
-        return jax.lax.with_sharding_constraint(minibatch, by_robot)
+        specs = tuple(
+            PartitionSpec() if axis is None else PartitionSpec(*(None,) * axis, AXIS)
+            for axis in robot_axes
+        )
+        return jax.shard_map(
+            function, mesh=self.mesh, in_specs=specs, out_specs=PartitionSpec(), check_vma=False
+        )
 
     def place(self, state: TrainState) -> TrainState:
         """Return a state laid out over the devices; all processes must call it.

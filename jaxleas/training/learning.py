@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -14,7 +13,9 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
 from jaxleas.training.adam import descend
-from jaxleas.training.config import RunConfig
+from jaxleas.training.averages import Average
+from jaxleas.training.config import PpoConfig, RunConfig
+from jaxleas.training.devices import AXIS, Devices
 from jaxleas.training.loss import Experience, ppo_loss
 from jaxleas.training.networks import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
@@ -22,23 +23,20 @@ from jaxleas.training.train_state import TrainState, learning_rate
 from jaxleas.types.compute_once import compute_once
 
 
-def make_learn(
-    config: RunConfig, env: SteeringEnv, divide_robots: Callable[[Any], Any]
-) -> Callable:
+def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = None) -> Callable:
     """Return the optimisation, which returns weights, moments and metrics.
 
     Args:
         config: of the run.
         env: the task.
-        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+        devices: that share it: each learns from its own robots, gradients are averaged.
 
     Returns:
         A function of the state after walking, the normaliser, what was walked, what was seen after
         the last step, the hyperparameters and a key.
     """
     ppo = config.ppo
-    robots = ppo.environments // ppo.minibatches
-    steps = ppo.epochs * ppo.minibatches
+    share = None if devices is None or len(devices) == 1 else devices.share
 
     def learn(
         state: TrainState,
@@ -49,45 +47,84 @@ def make_learn(
         key: Array,
     ):
         rate = learning_rate(ppo, numbers)
+        average = Average(AXIS if share else None)
+
+        def descend_all(params, moments, normaliser, always, batch, last, order, flip, noise):
+            images, last = mirror_images(env, batch, last, ppo.mirror)
+            images = replace(images, observation=normalise(images.observation, normaliser))
+            last = normalise(last, normaliser)
+            first = jnp.arange(order.shape[1]) * ppo.minibatches
+
+            def minibatch_step(carry, inputs):
+                params, moments = carry
+                chosen, flip, noise = inputs
+                minibatch, seen_last = take_robots(images, last, first + chosen, flip, always)
+                gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
+                    params,
+                    minibatch,
+                    seen_last[0],
+                    noise,
+                    numbers,
+                    config.network.activation,
+                    always,
+                    average,
+                )
+                vector, as_params = ravel_pytree(gradient)
+                change, moments, metrics["gradient_norm"] = descend(
+                    average.mean(vector), moments, rate, numbers.max_gradient_norm, always
+                )
+                return (optax.apply_updates(params, as_params(change)), moments), metrics
+
+            (params, moments), metrics = jax.lax.scan(
+                minibatch_step, (params, moments), (order, flip, noise)
+            )
+            return params, moments, average.metrics(metrics)
+
+        order, flip, noise = draw_minibatches(ppo, env.action_size, key)
         always = state.update >= 0  # the compiler does not know
-        images, last = mirror_images(env, batch, last_observation, ppo.mirror)
-        images = replace(images, observation=normalise(images.observation, normaliser))
-        last = normalise(last, normaliser)
-
-        def minibatch_step(carry, inputs):
-            params, moments = carry
-            chosen, flip, noise = inputs
-            minibatch, seen_last = divide_robots(take_robots(images, last, chosen, flip, always))
-            gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
-                params,
-                minibatch,
-                seen_last[0],
-                noise,
-                numbers,
-                config.network.activation,
-                always,
-            )
-            vector, as_params = ravel_pytree(gradient)
-            change, moments, metrics["gradient_norm"] = descend(
-                vector, moments, rate, numbers.max_gradient_norm, always
-            )
-            return (optax.apply_updates(params, as_params(change)), moments), metrics
-
-        order_key, flip_key, noise_key = jax.random.split(key, 3)
-        # Shuffled by robot, not by sample: sorting and gathering whole batches is slow.
-        order = jax.vmap(lambda one: jax.random.permutation(one, ppo.environments))(
-            jax.random.split(order_key, ppo.epochs)
-        ).reshape(steps, robots)
-        share = 0.5 if ppo.mirror else 0.0
-        flip = jax.random.bernoulli(flip_key, share, order.shape)
-        noise = jax.random.normal(noise_key, (steps, ppo.unroll, robots, env.action_size))
-        (params, moments), metrics = jax.lax.scan(
-            minibatch_step, (state.params, state.optimiser), (order, flip, noise)
+        robot_axes = (None, None, None, None, 1, 0, 1, 1, 2)
+        together = share(descend_all, robot_axes) if share else descend_all
+        params, moments, metrics = together(
+            state.params,
+            state.optimiser,
+            normaliser,
+            always,
+            batch,
+            last_observation,
+            order,
+            flip,
+            noise,
         )
         averages = {f"learn/{name}": jnp.mean(value) for name, value in metrics.items()}
         return params, moments, averages
 
     return learn
+
+
+def draw_minibatches(
+    ppo: PpoConfig, action_size: int, key: Array
+) -> tuple[Int[Array, "steps some"], Bool[Array, "steps some"], Float[Array, "steps time some 4"]]:
+    """Draw which robots make up each minibatch, which of them are mirrored, and normal noise.
+
+    A minibatch has one robot of each group of `ppo.minibatches` neighbours, so that devices which
+    have whole groups have their share of each. Drawn by robot, not by sample: sorting and
+    gathering whole batches is slow.
+
+    Args:
+        ppo: numbers of robots, minibatches and epochs.
+        action_size: numbers in an action.
+        key: for all of it.
+
+    Returns:
+        Each robot's place in its group, for all minibatches one after another; and the rest.
+    """
+    groups = ppo.environments // ppo.minibatches
+    order_key, flip_key, noise_key = jax.random.split(key, 3)
+    tickets = jax.random.uniform(order_key, (ppo.epochs, ppo.minibatches, groups))
+    order = jnp.argsort(tickets, axis=1).reshape(-1, groups)
+    flip = jax.random.bernoulli(flip_key, 0.5 if ppo.mirror else 0.0, order.shape)
+    noise = jax.random.normal(noise_key, (len(order), ppo.unroll, groups, action_size))
+    return order, flip, noise
 
 
 def mirror_images(

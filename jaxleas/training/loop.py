@@ -81,7 +81,7 @@ class Trainer:
         self.held_out = jax.device_put(held_out_world(config), devices.whole)
         networks = make_networks(config.network, self.env)
         self.train_step = jax.jit(
-            make_train_step(config, self.env, devices.divide_robots),
+            make_train_step(config, self.env, devices),
             donate_argnums=1,
             in_shardings=(devices.whole, devices.state),
             out_shardings=(devices.state, devices.whole),

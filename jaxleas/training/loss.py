@@ -15,6 +15,7 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import ACTION_SIZE
+from jaxleas.training.averages import ONE_DEVICE, Average
 from jaxleas.training.networks import dense
 
 LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
@@ -124,6 +125,7 @@ def ppo_loss(
     hyper: Any,
     activation: Any,
     always: Array | None = None,
+    average: Average = ONE_DEVICE,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the loss and its metrics.
 
@@ -135,6 +137,7 @@ def ppo_loss(
         hyper: with discount, gae_lambda, clip, entropy, value_weight and reward_scale.
         activation: between the networks' layers.
         always: true, and not known to the compiler (`networks.dense`).
+        average: over the devices that have robots of this minibatch.
     """
     location, deviation = action_distribution(
         dense(params.policy, batch.observation, activation, always)
@@ -150,7 +153,7 @@ def ppo_loss(
         hyper.discount,
         hyper.gae_lambda,
     )
-    advantage = (advantage - jnp.mean(advantage)) / (jnp.std(advantage) + 1e-8)
+    advantage = average.standardised(advantage)
     before = log_density(batch.raw_action, batch.location, batch.deviation)
     ratio = jnp.exp(log_density(batch.raw_action, location, deviation) - before)
     clipped = jnp.clip(ratio, 1.0 - hyper.clip, 1.0 + hyper.clip)

@@ -10,6 +10,7 @@ from jax import Array
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.config import RunConfig
+from jaxleas.training.devices import Devices
 from jaxleas.training.learning import make_learn
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import update_normaliser
@@ -39,20 +40,20 @@ class TrainStep(Protocol):
 def make_train_step(
     config: RunConfig,
     env: SteeringEnv,
-    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+    devices: Devices | None = None,
 ) -> TrainStep:
     """Return the train step: draw fresh starts, walk, learn. It is pure; jit it as you like.
 
     Args:
         config: of the run.
         env: the task.
-        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+        devices: that share the learning; None: one.
 
     Returns:
         The train step, on whose arguments alone what it returns depends.
     """
     walk = make_walk(config, env)
-    update = make_update(config, env, divide_robots)
+    update = make_update(config, env, devices)
     constants = PpoParams.of(config)
 
     def train_step(
@@ -70,7 +71,7 @@ def make_train_step(
 def make_update(
     config: RunConfig,
     env: SteeringEnv,
-    divide_robots: Callable[[Any], Any] = lambda minibatch: minibatch,
+    devices: Devices | None = None,
 ) -> Callable[..., tuple[TrainState, Metrics]]:
     """Return the second half of the train step: learn from a batch, whoever walked it.
 
@@ -80,14 +81,14 @@ def make_update(
     Args:
         config: of the run.
         env: the task.
-        divide_robots: lays a minibatch [time, robots, ...] out over several devices.
+        devices: that share the learning; None: one.
 
     Returns:
         A function (state, batch [time, robots], observation after its last step, key,
         hyperparameters) -> (state after one update, metrics); without hyperparameters the
         configuration's.
     """
-    learn = make_learn(config, env, divide_robots)
+    learn = make_learn(config, env, devices)
     constants = PpoParams.of(config)
 
     def update(
