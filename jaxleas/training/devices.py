@@ -59,6 +59,13 @@ class Devices:
         layout: Any = {name: self.divided if name in DIVIDED else self.whole for name in names}
         return TrainState(**layout)
 
+    def divide(self, robots: Tree) -> Tree:
+        """Lay arrays with one entry a robot out over the devices, where they can be divided."""
+        count = len(jax.tree.leaves(robots)[0])
+        if len(self) == 1 or count % len(self):
+            return robots
+        return jax.lax.with_sharding_constraint(robots, self.divided)
+
     def share(
         self, function: Callable[..., Any], robot_axes: Sequence[int | None]
     ) -> Callable[..., Any]:

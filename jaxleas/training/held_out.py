@@ -19,12 +19,21 @@ EXAMINATION_KEY = 20_210_530
 
 
 def make_examination(
-    config: RunConfig, env: SteeringEnv, networks: PPONetworks
+    config: RunConfig,
+    env: SteeringEnv,
+    networks: PPONetworks,
+    divide: Callable[[Any], Any] = lambda robots: robots,
 ) -> Callable[[World, Any, Any], dict[str, Array]]:
     """Return the examination: (held-out world, normaliser, policy) -> fractions of starts.
 
     Every robot walks, by the policy's mean, until its first goal is reached, its configuration is
     invalid, or the time is up; all stop early when none walks any more.
+
+    Args:
+        config: of the run.
+        env: the task.
+        networks: actor and critic.
+        divide: lays arrays with one entry a robot out over several devices.
     """
     held_out = config.held_out
     # Everybody has a link to cross here; in training some begin with a random goal.
@@ -36,7 +45,7 @@ def make_examination(
     def examine(world: World, normaliser: Any, policy: Any) -> dict[str, Array]:
         pool_key, take_key = jax.random.split(jax.random.key(EXAMINATION_KEY))
         pool = draw_starts(env, world, pool_key, 2 * held_out.starts)
-        episode, observation = take(pool, take_key, held_out.starts)
+        episode, observation = divide(take(pool, take_key, held_out.starts))
         nobody = jnp.zeros(held_out.starts, dtype=bool)
 
         def someone_walks(carry):

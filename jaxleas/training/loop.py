@@ -31,6 +31,9 @@ from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import InputError, JaxleasError
 
 POLICY_FILE = "policy.npz"
+# Updates that the devices have before them: cores that share a program hang in XLA:CPU with more
+# than some thirty of its runs to come.
+MOST_AHEAD = 8
 _LOG = logging.getLogger("jaxleas")
 
 
@@ -87,7 +90,8 @@ class Trainer:
             out_shardings=(devices.state, devices.whole),
         )
         self.examine = jax.jit(
-            make_examination(config, self.env, networks), out_shardings=devices.whole
+            make_examination(config, self.env, networks, devices.divide),
+            out_shardings=devices.whole,
         )
         begin = jax.jit(
             lambda world: initial_state(config, self.env, world, networks),
@@ -247,10 +251,12 @@ class _Session:
             state, metrics = self.trainer.train_step(self.trainer.world, state)
             done += 1
             pending.append((done, metrics))
+            if len(pending) > MOST_AHEAD:
+                jax.block_until_ready(pending[-MOST_AHEAD][1])
             due = done % config.held_out.every == 0 or done == config.ppo.updates
             # Several processes decide together, where they wait for each other anyway.
             if due or (alone and self.interruption.requested):
-                # The only point where the host waits for the device.
+                # The only point where the host waits for the newest update.
                 rows = self._check(pending)
                 pending = []
                 verdict = self._examine(state) if due else {}
