@@ -33,9 +33,12 @@ def make_learn(
         A function of the state after walking, the normaliser, what was walked, what was seen after
         the last step, the hyperparameters and a key.
     """
-    ppo = config.ppo
+    ppo, network = config.ppo, config.network
     robots = ppo.environments // ppo.minibatches
     steps = ppo.epochs * ppo.minibatches
+
+    def seen(observation: Array, normaliser: Normaliser) -> Array:
+        return normalise(observation, normaliser).astype(network.products)
 
     def learn(
         state: TrainState,
@@ -47,8 +50,8 @@ def make_learn(
     ):
         optimiser = make_optimiser(ppo, numbers)
         images, last = mirror_images(env, batch, last_observation, ppo.mirror)
-        images = replace(images, observation=normalise(images.observation, normaliser))
-        last = normalise(last, normaliser)
+        images = replace(images, observation=seen(images.observation, normaliser))
+        last = seen(last, normaliser)
 
         def minibatch_step(carry, inputs):
             params, moments = carry
@@ -60,7 +63,7 @@ def make_learn(
                 seen_last[0],
                 noise,
                 numbers,
-                config.network.activation,
+                network,
             )
             updates, moments = optimiser.update(gradient, moments, params)
             metrics["gradient_norm"] = optax.global_norm(gradient)

@@ -77,12 +77,19 @@ def layers_of(params: Any) -> list[tuple[Array, Array]]:
     return [(layers[name]["kernel"], layers[name]["bias"]) for name in names]
 
 
-def dense(params: Any, hidden: Float[Array, "*batch size"], activation: str) -> Array:
-    """Return what a network of Brax's answers to normalised observations."""
+def dense(params: Any, hidden: Float[Array, "*batch size"], config: NetworkConfig) -> Array:
+    """Return what a network of Brax's answers to normalised observations, float32.
+
+    Args:
+        params: of the network.
+        hidden: observations, normalised.
+        config: activation, and in what numbers products are taken: the last layer's are float32.
+    """
     *inner, (kernel, bias) = layers_of(params)
     for inner_kernel, inner_bias in inner:
-        hidden = ACTIVATION[activation](_affine(hidden, inner_kernel, inner_bias))
-    return _affine(hidden, kernel, bias)
+        rows = hidden.astype(config.products)
+        hidden = ACTIVATION[config.activation](_affine(rows, inner_kernel, inner_bias))
+    return _affine(hidden.astype(jnp.float32), kernel, bias)
 
 
 def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
@@ -93,16 +100,18 @@ def _affine(hidden: Array, kernel: Array, bias: Array) -> Array:
 def product(
     rows: Float[Array, "*batch inputs"], kernel: Float[Array, "inputs outputs"]
 ) -> Float[Array, "*batch outputs"]:
-    """Return rows @ kernel."""
-    return rows @ kernel
+    """Return rows @ kernel, in the rows' type."""
+    return rows @ kernel.astype(rows.dtype)
 
 
 def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
     rows, kernel = kept
     batch = tuple(range(rows.ndim - 1))
     # In this order: JAX's own is its transpose, for which XLA:CPU turns the whole gradient round.
-    of_kernel = jax.lax.dot_general(rows, gradient, ((batch, batch), ((), ())))
-    return gradient @ kernel.T, of_kernel
+    of_kernel = jax.lax.dot_general(
+        rows, gradient, ((batch, batch), ((), ())), preferred_element_type=kernel.dtype
+    )
+    return gradient @ kernel.T.astype(rows.dtype), of_kernel
 
 
-product.defvjp(lambda rows, kernel: (rows @ kernel, (rows, kernel)), _product_backward)
+product.defvjp(lambda rows, kernel: (product(rows, kernel), (rows, kernel)), _product_backward)
