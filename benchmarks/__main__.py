@@ -1,6 +1,7 @@
 """Measure how fast jaxleas is on this machine.
 
 python -m benchmarks [--only NAME ...] [--quick] [--runs N] [--json OUT.json | --into FILE.json]
+                     [--device gpu] [--config FILE]
 """
 
 import argparse
@@ -29,7 +30,7 @@ def main(arguments: Sequence[str]) -> None:
         os.environ["JAX_PLATFORMS"] = name if name == "cpu" else f"{name},cpu"
 
     from benchmarks.comparison import by_name, compare
-    from benchmarks.context import Context
+    from benchmarks.context import CONFIG, Context
     from benchmarks.measurements import (
         merge,
         read_measurements,
@@ -44,6 +45,8 @@ def main(arguments: Sequence[str]) -> None:
     class SlowerError(JaxleasError):
         exit_code = 1
 
+    if given.config and given.check and given.baseline == BASELINE:
+        raise UsageError(f"--check --config {given.config}: name its own --baseline FILE")
     metrics = choose(given.only, given.quick)
     if given.list:
         for metric in metrics:
@@ -56,7 +59,9 @@ def main(arguments: Sequence[str]) -> None:
     if target:
         _require_writable(target)
     before = read_measurements(given.into) if given.into and given.into.exists() else []
-    if given.check or given.baseline != BASELINE or BASELINE.is_file():
+    # What is trained with another configuration has nothing to be compared with but its own.
+    ours = given.config is None and BASELINE.is_file()
+    if given.check or given.baseline != BASELINE or ours:
         baseline = by_name(read_measurements(given.baseline))
     else:
         baseline = {}
@@ -74,7 +79,8 @@ def main(arguments: Sequence[str]) -> None:
         )
     rivals = None if given.no_rivals else given.rivals or default_python()
     runs = given.runs or (2 if given.quick else 5)
-    context = Context(runs=runs, rivals=rivals)
+    context = Context(runs, rivals, given.config.resolve() if given.config else CONFIG)
+    _ = context.config  # a mistake in it is found before anything is measured
     measurements = measure(metrics, context, lambda text: print(text, file=sys.stderr, flush=True))
     comparisons = [
         compare(metric, each, baseline) for metric, each in zip(metrics, measurements, strict=True)
@@ -128,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     files.add_argument("--into", type=Path, metavar="FILE.json", help=text)
     add("--baseline", type=Path, default=BASELINE, metavar="FILE", help="to compare with")
     add("--check", action="store_true", help="exit code 1 where worse than the baseline")
+    add("--config", type=Path, metavar="FILE", help="to train with, in place of the shipped one")
     rivals = parser.add_mutually_exclusive_group()
     add = rivals.add_argument
     add("--rivals", nargs="?", const=sys.executable, metavar="PYTHON", help="that has the rival")

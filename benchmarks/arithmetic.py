@@ -4,6 +4,8 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import jax.numpy as jnp
+
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ACTION_SIZE
 from jaxleas.envs.steering.state import GOALS
@@ -72,7 +74,7 @@ def step_work(config: RunConfig, env: SteeringEnv) -> StepWork:
     return StepWork(
         walk_flops=forward_flops(actor),
         learn_flops=epochs * (gradient_flops(actor) + gradient_flops(critic)),
-        learn_bytes=FLOAT * size * (1 + epochs),
+        learn_bytes=size * (FLOAT + epochs * jnp.dtype(config.network.products).itemsize),
         env_bytes=FLOAT * env_words(env),
         env_heights=len(env.points_in_root),
     )

@@ -40,22 +40,26 @@ class Roofs:
             matrix: whether the rate of products is needed (it is infinite otherwise).
         """
         words = robots * (len(env.points_in_root) + env.layout.size)
-        fastest = max(self.large_products(), self.network_products(config, env)) if matrix else 0.0
+        fastest = float("inf")
+        if matrix:
+            large = self.large_products(config.network.products)
+            fastest = max(large, self.network_products(config, env))
         return Rates(
-            matrix=fastest or float("inf"),
+            matrix=fastest,
             memory=self.memory(words),
             gather=self.gather(env, robots),
         )
 
-    def large_products(self) -> float:
-        """Return the rate of large float32 matrix products [FLOP/s]."""
-        return self._once(("large",), _large_products)
+    def large_products(self, numbers: str) -> float:
+        """Return the rate of large matrix products in such numbers [FLOP/s]."""
+        return self._once(("large", numbers), lambda: _large_products(numbers))
 
     def network_products(self, config: RunConfig, env: SteeringEnv) -> float:
         """Return the rate of the products of one minibatch's gradient, and of nothing else."""
         samples = config.ppo.batch // config.ppo.minibatches
         sizes = (samples, env.layout.size, *config.network.hidden)
-        return self._once(("network", *sizes), lambda: _network_products(*sizes))
+        numbers = config.network.products
+        return self._once(("network", numbers, *sizes), lambda: _network_products(numbers, *sizes))
 
     def memory(self, words: int) -> float:
         """Return the bandwidth over an array of so many four-byte words [B/s]."""
@@ -77,26 +81,26 @@ def _seconds(call: Callable[[], Array]) -> float:
     return min(seconds_a_call(call, RUNS, least_seconds=0.3))
 
 
-def _normal(seed: int, *shape: int) -> Array:
-    return jax.random.normal(jax.random.key(seed), shape, dtype=jnp.float32)
+def _normal(numbers: str, seed: int, *shape: int) -> Array:
+    return jax.random.normal(jax.random.key(seed), shape, dtype=jnp.float32).astype(numbers)
 
 
-def _large_products() -> float:
-    left, right = _normal(0, LARGE, LARGE), _normal(1, LARGE, LARGE)
+def _large_products(numbers: str) -> float:
+    left, right = _normal(numbers, 0, LARGE, LARGE), _normal(numbers, 1, LARGE, LARGE)
     product = jax.jit(jnp.matmul)
     return 2.0 * LARGE**3 / _seconds(lambda: product(left, right))
 
 
-def _network_products(samples: int, inputs: int, *hidden: int) -> float:
+def _network_products(numbers: str, samples: int, inputs: int, *hidden: int) -> float:
     """Time three products a layer, operands ready: forward, weights' and inputs' gradients."""
     networks = [layers(inputs, hidden, outputs) for outputs in (LOGITS, 1)]
     operands = []
     for network in networks:
         for index, (rows, columns) in enumerate(network):
             values = (
-                _normal(2, samples, rows),
-                _normal(3, rows, columns),
-                _normal(4, samples, columns),
+                _normal(numbers, 2, samples, rows),
+                _normal(numbers, 3, rows, columns),
+                _normal(numbers, 4, samples, columns),
             )
             operands.append((*values, index > 0))
     arrays = [each[:3] for each in operands]

@@ -147,7 +147,8 @@ def _fill_here() -> None:
     for name in ("leas_p1", "another", "leas_p2_sampling", "p2_mip"):
         run = make_run(Path("runs") / name, seed=len(name))
         write_policy(run / "policy.npz", homing_policy())
-    shutil.copytree(ROOT / "configs", "configs")
+    for name in ("configs", "pretrained"):
+        shutil.copytree(ROOT / name, name)
 
 
 class Runner:

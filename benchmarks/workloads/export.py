@@ -31,7 +31,7 @@ def _measure(batch: int, context: Context) -> dict[str, Figure]:
     observation = random.uniform(-1, 1, (batch, env.layout.size)).astype(np.float32)
     seconds = seconds_a_call(lambda: exported(observation), context.runs)
     flops = batch * forward_flops(layers(env.layout.size, network.hidden, ACTION_SIZE))
-    limit = 1e6 * flops / context.roofs.large_products()
+    limit = 1e6 * flops / context.roofs.large_products("float32")
     return {
         f"export_latency_{batch}": Figure(
             [1e6 * each for each in seconds], limit, context.rival.figure(f"latency_{batch}")

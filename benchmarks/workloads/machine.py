@@ -16,12 +16,12 @@ def _gather(context: Context) -> dict[str, Figure]:
 
 
 def _products(context: Context) -> dict[str, Figure]:
-    roofs = context.roofs
+    roofs, numbers = context.roofs, context.config.network.products
     return {
-        "ppo_roof_large_products": Figure([roofs.large_products() / 1e9]),
+        "ppo_roof_large_products": Figure([roofs.large_products(numbers) / 1e9]),
         "ppo_roof_network_products": Figure(
             [roofs.network_products(context.config, context.env) / 1e9],
-            limit=roofs.large_products() / 1e9,
+            limit=roofs.large_products(numbers) / 1e9,
         ),
     }
 

@@ -46,7 +46,12 @@ def start(words: Sequence[str], cache: Path, log: Path) -> subprocess.Popen:
         return subprocess.Popen(
             [sys.executable, *words],
             cwd=ROOT,
-            env=os.environ | {"JAX_COMPILATION_CACHE_DIR": str(cache)},
+            env=os.environ
+            | {
+                "JAX_COMPILATION_CACHE_DIR": str(cache),
+                # Of a GPU's memory the measuring process holds most already.
+                "XLA_PYTHON_CLIENT_PREALLOCATE": "false",
+            },
             stdout=stream,
             stderr=subprocess.STDOUT,
         )

@@ -83,7 +83,7 @@ def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
             episode, observation, walking = carry
             normalised = normalise(observation, state.normaliser)
             location, deviation = action_distribution(
-                dense(state.params.policy, normalised, config.network.activation)
+                dense(state.params.policy, normalised, config.network)
             )
             raw_action = location + deviation * noise_now
             after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))

@@ -54,6 +54,9 @@ class NetworkConfig(Strict):
     activation: Literal["relu", "tanh", "swish", "elu"] = "relu"
     normaliser: Literal["affine", "running"] = "affine"
     """`affine`: fixed, from the observation's bounds; `running`: Brax's running statistics."""
+    products: Literal["float32", "bfloat16"] = "float32"
+    """In what numbers training multiplies matrices and keeps what lies between layers: `bfloat16`
+    is faster on a GPU. Weights, sums, and what is judged and exported are float32 all the same."""
 
 
 class PpoConfig(Strict):

@@ -35,8 +35,11 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
         A function of the state after walking, the normaliser, what was walked, what was seen after
         the last step, the hyperparameters and a key.
     """
-    ppo = config.ppo
+    ppo, network = config.ppo, config.network
     share = None if devices is None or len(devices) == 1 else devices.share
+
+    def seen(observation: Array, normaliser: Normaliser) -> Array:
+        return normalise(observation, normaliser).astype(network.products)
 
     def learn(
         state: TrainState,
@@ -51,8 +54,8 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
 
         def descend_all(params, moments, normaliser, always, batch, last, order, flip, noise):
             images, last = mirror_images(env, batch, last, ppo.mirror)
-            images = replace(images, observation=normalise(images.observation, normaliser))
-            last = normalise(last, normaliser)
+            images = replace(images, observation=seen(images.observation, normaliser))
+            last = seen(last, normaliser)
             first = jnp.arange(order.shape[1]) * ppo.minibatches
 
             def minibatch_step(carry, inputs):
@@ -65,7 +68,7 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
                     seen_last[0],
                     noise,
                     numbers,
-                    config.network.activation,
+                    network,
                     always,
                     average,
                 )

@@ -16,6 +16,7 @@ from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import ACTION_SIZE
 from jaxleas.training.averages import ONE_DEVICE, Average
+from jaxleas.training.config import NetworkConfig
 from jaxleas.training.networks import dense
 
 LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
@@ -107,11 +108,12 @@ def advantages(
     delta = seen * (reward + future * following - values)
     decay = gae_lambda * seen * future
 
-    def before(error: Array, step: tuple[Array, Array]) -> tuple[Array, Array]:
-        error = step[0] + step[1] * error
-        return error, error
+    def join(later: tuple[Array, Array], earlier: tuple[Array, Array]) -> tuple[Array, Array]:
+        return earlier[0] * later[0], earlier[1] + earlier[0] * later[1]
 
-    _, errors = jax.lax.scan(before, jnp.zeros_like(last_value), (delta, decay), reverse=True)
+    # error = delta + decay * next error, for all times in log(time) passes: one after the other
+    # they would be a launch each on a GPU, whose minibatches are done in the time of a few.
+    _, errors = jax.lax.associative_scan(join, (decay, delta), reverse=True)
     targets = errors + values
     following = jnp.concatenate([targets[1:], last_value[None]])
     return targets, seen * (reward + future * following - values)
@@ -123,7 +125,7 @@ def ppo_loss(
     last_observation: Float[Array, "robots size"],
     noise: Float[Array, "time robots 4"],
     hyper: Any,
-    activation: Any,
+    network: NetworkConfig,
     always: Array | None = None,
     average: Average = ONE_DEVICE,
 ) -> tuple[Array, dict[str, Array]]:
@@ -135,15 +137,15 @@ def ppo_loss(
         last_observation: after the last step, to bootstrap from; normalised.
         noise: standard normal, to sample the entropy with.
         hyper: with discount, gae_lambda, clip, entropy, value_weight and reward_scale.
-        activation: between the networks' layers.
+        network: of actor and critic.
         always: true, and not known to the compiler (`networks.dense`).
         average: over the devices that have robots of this minibatch.
     """
     location, deviation = action_distribution(
-        dense(params.policy, batch.observation, activation, always)
+        dense(params.policy, batch.observation, network, always)
     )
-    values = dense(params.value, batch.observation, activation, always)[..., 0]
-    last_value = dense(jax.lax.stop_gradient(params.value), last_observation, activation)
+    values = dense(params.value, batch.observation, network, always)[..., 0]
+    last_value = dense(jax.lax.stop_gradient(params.value), last_observation, network)
     targets, advantage = advantages(
         jax.lax.stop_gradient(values),
         last_value[..., 0],

@@ -82,21 +82,24 @@ def layers_of(params: Any) -> list[tuple[Array, Array]]:
 def dense(
     params: Any,
     hidden: Float[Array, "*batch size"],
-    activation: str,
+    config: NetworkConfig,
     always: Bool[Array, ""] | None = None,
 ) -> Array:
-    """Return what a network of Brax's answers to normalised observations.
+    """Return what a network of Brax's answers to normalised observations, float32.
 
     Args:
         params: of the network.
-        hidden: the observations.
-        activation: between the layers.
+        hidden: observations, normalised.
+        config: activation, and in what numbers products are taken: the last layer's are float32.
         always: true, and not known to the compiler: keeps the activations apart (`compute_once`)
             for a gradient, whose products want them turned round.
     """
     *inner, (kernel, bias) = layers_of(params)
-    for inner_kernel, inner_bias in inner:
-        hidden = _activated(activation, product(hidden, inner_kernel), inner_bias, always)
+    types = [config.products] * (len(inner) - 1) + ["float32"]
+    hidden = hidden.astype(config.products if inner else "float32")
+    for (inner_kernel, inner_bias), numbers in zip(inner, types, strict=False):
+        rows = product(hidden, inner_kernel)
+        hidden = _activated(config.activation, numbers, rows, inner_bias, always)
     return product(hidden, kernel) + _as_row(bias, hidden)
 
 
@@ -104,23 +107,29 @@ def _as_row(bias: Array, rows: Array) -> Array:
     return bias.reshape((1,) * (rows.ndim - 1) + bias.shape)
 
 
-@partial(jax.custom_vjp, nondiff_argnums=(0,))
-def _activated(name: str, rows: Array, bias: Array, always: Array | None) -> Array:
+@partial(jax.custom_vjp, nondiff_argnums=(0, 1))
+def _activated(name: str, numbers: str, rows: Array, bias: Array, always: Array | None) -> Array:
+    """Return the activation of rows + bias, in the numbers that the next product takes."""
+
     def activate(rows: Array, bias: Array) -> Array:
-        return ACTIVATION[name](rows + _as_row(bias, rows))
+        return ACTIVATION[name](rows + _as_row(bias, rows)).astype(numbers)
 
     return activate(rows, bias) if always is None else compute_once(activate, always, rows, bias)
 
 
-def _activated_backward(name: str, kept: tuple[Array, Array], gradient: Array):
+def _activated_backward(name: str, numbers: str, kept: tuple[Array, Array], gradient: Array):
     rows, bias = kept
-    _, pull = jax.vjp(ACTIVATION[name], rows + _as_row(bias, rows))
-    (of_rows,) = pull(gradient)
-    return of_rows, jnp.sum(of_rows, axis=tuple(range(rows.ndim - 1))), None
+    before = rows + _as_row(bias, rows)
+    _, pull = jax.vjp(ACTIVATION[name], before)
+    (slope,) = pull(gradient.astype(before.dtype))
+    return slope.astype(rows.dtype), jnp.sum(slope, axis=tuple(range(rows.ndim - 1))), None
 
 
 _activated.defvjp(
-    lambda name, rows, bias, always: (_activated(name, rows, bias, always), (rows, bias)),
+    lambda name, numbers, rows, bias, always: (
+        _activated(name, numbers, rows, bias, always),
+        (rows, bias),
+    ),
     _activated_backward,
 )
 
@@ -129,16 +138,18 @@ _activated.defvjp(
 def product(
     rows: Float[Array, "*batch inputs"], kernel: Float[Array, "inputs outputs"]
 ) -> Float[Array, "*batch outputs"]:
-    """Return rows @ kernel."""
-    return rows @ kernel
+    """Return rows @ kernel, in the rows' type."""
+    return rows @ kernel.astype(rows.dtype)
 
 
 def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
     rows, kernel = kept
     batch = tuple(range(rows.ndim - 1))
     # In this order: JAX's own is its transpose, for which XLA:CPU turns the whole gradient round.
-    of_kernel = jax.lax.dot_general(rows, gradient, ((batch, batch), ((), ())))
-    return gradient @ kernel.T, of_kernel
+    of_kernel = jax.lax.dot_general(
+        rows, gradient, ((batch, batch), ((), ())), preferred_element_type=kernel.dtype
+    )
+    return gradient @ kernel.T.astype(rows.dtype), of_kernel
 
 
-product.defvjp(lambda rows, kernel: (rows @ kernel, (rows, kernel)), _product_backward)
+product.defvjp(lambda rows, kernel: (product(rows, kernel), (rows, kernel)), _product_backward)

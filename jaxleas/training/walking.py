@@ -34,7 +34,7 @@ def make_walk(config: RunConfig, env: SteeringEnv) -> Callable:
             noise_now, pick = inputs
             normalised = normalise(observation, state.normaliser)
             location, deviation = action_distribution(
-                dense(state.params.policy, normalised, config.network.activation)
+                dense(state.params.policy, normalised, config.network)
             )
             raw_action = location + deviation * noise_now
             after, verdict = env.advance(world.atlas, weights, episode, jnp.tanh(raw_action))

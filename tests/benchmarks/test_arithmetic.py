@@ -32,6 +32,10 @@ def test_the_thesis_networks_by_hand():
     critic = 2 * (18_432 + 8_192 + 2_048 + 32)
     assert work.learn_flops == 4 * (3 * 57_856 + 3 * critic - 4 * 18_432)
     assert work.flops == 57_856 + work.learn_flops == 1_146_112
+    # An observation is written once and read once an epoch.
+    assert work.learn_bytes == 144 * 5 * 4
+    low = changed(RunConfig(), network={"products": "bfloat16"})
+    assert step_work(low, SteeringEnv(SteeringConfig())).learn_bytes == 144 * (4 + 4 * 2)
 
 
 @pytest.mark.parametrize("sizes", [(144, 128, 64, 32, 8), (81, 64, 64, 1), (20, 30, 10)])

@@ -52,6 +52,8 @@ def baseline(path, value: float, machine: str | None = None) -> str:
         (["--rivals", "/nowhere/python"], "cannot be run as a Python"),
         (["--rivals", "--no-rivals"], "not allowed with"),
         (["--check", "--baseline", "/nowhere/base.json"], "does not exist"),
+        (["--config", "/nowhere/config.yaml"], "does not exist"),
+        (["--check", "--config", "configs/leas_p1_gpu.yaml"], "name its own --baseline"),
         (["--json", "/dev/null/out.json"], "cannot write"),
         (["--json", "a.json", "--into", "b.json"], "not allowed with"),
     ],

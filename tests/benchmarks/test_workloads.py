@@ -24,7 +24,7 @@ def context(monkeypatch) -> Context:
     context.config = tiny()
     rates = SimpleNamespace(matrix=1e12, memory=1e12, gather=1e12)
     context.__dict__["roofs"] = SimpleNamespace(
-        rates=lambda *_, **__: rates, large_products=lambda: 1e12
+        rates=lambda *_, **__: rates, large_products=lambda _: 1e12
     )
     for module in (environment, export, training):
         quick = partial(seconds_a_call, least_seconds=0.01)
