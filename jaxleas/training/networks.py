@@ -139,7 +139,7 @@ def product(
     rows: Float[Array, "*batch inputs"], kernel: Float[Array, "inputs outputs"]
 ) -> Float[Array, "*batch outputs"]:
     """Return rows @ kernel, in the rows' type."""
-    return rows @ kernel.astype(rows.dtype)
+    return _rows_by(rows, kernel.astype(rows.dtype))
 
 
 def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
@@ -149,7 +149,15 @@ def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array
     of_kernel = jax.lax.dot_general(
         rows, gradient, ((batch, batch), ((), ())), preferred_element_type=kernel.dtype
     )
-    return gradient @ kernel.T.astype(rows.dtype), of_kernel
+    return _rows_by(gradient, kernel.T.astype(rows.dtype)), of_kernel
 
 
 product.defvjp(lambda rows, kernel: (product(rows, kernel), (rows, kernel)), _product_backward)
+
+
+def _rows_by(rows: Array, kernel: Array) -> Array:
+    def summed_in_float32(rows: Array, kernel: Array) -> Array:
+        return jnp.matmul(rows, kernel, preferred_element_type=jnp.float32).astype(rows.dtype)
+
+    # A processor's units for matrices answer in float32, and XLA:CPU uses them only if asked to.
+    return jax.lax.platform_dependent(rows, kernel, cpu=summed_in_float32, default=jnp.matmul)
