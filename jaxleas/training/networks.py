@@ -1,5 +1,6 @@
 """Actor and critic: Brax's PPO networks over one of two normalisers."""
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -98,8 +99,7 @@ def dense(
     types = [config.products] * (len(inner) - 1) + ["float32"]
     hidden = hidden.astype(config.products if inner else "float32")
     for (inner_kernel, inner_bias), numbers in zip(inner, types, strict=False):
-        rows = product(hidden, inner_kernel)
-        hidden = _activated(config.activation, numbers, rows, inner_bias, always)
+        hidden = _layer(config.activation, numbers, hidden, inner_kernel, inner_bias, always)
     return product(hidden, kernel) + _as_row(bias, hidden)
 
 
@@ -108,30 +108,52 @@ def _as_row(bias: Array, rows: Array) -> Array:
 
 
 @partial(jax.custom_vjp, nondiff_argnums=(0, 1))
-def _activated(name: str, numbers: str, rows: Array, bias: Array, always: Array | None) -> Array:
-    """Return the activation of rows + bias, in the numbers that the next product takes."""
-
-    def activate(rows: Array, bias: Array) -> Array:
-        return ACTIVATION[name](rows + _as_row(bias, rows)).astype(numbers)
-
-    return activate(rows, bias) if always is None else compute_once(activate, always, rows, bias)
+def _layer(
+    name: str, numbers: str, rows: Array, kernel: Array, bias: Array, always: Array | None
+) -> Array:
+    """Return activation(rows @ kernel + bias), in the numbers that the next product takes."""
+    return _answer(name, numbers, rows, kernel, bias, always)[0]
 
 
-def _activated_backward(name: str, numbers: str, kept: tuple[Array, Array], gradient: Array):
-    rows, bias = kept
-    before = rows + _as_row(bias, rows)
-    _, pull = jax.vjp(ACTIVATION[name], before)
-    (slope,) = pull(gradient.astype(before.dtype))
-    return slope.astype(rows.dtype), jnp.sum(slope, axis=tuple(range(rows.ndim - 1))), None
+def _answer(
+    name: str, numbers: str, rows: Array, kernel: Array, bias: Array, always: Array | None
+) -> tuple[Array, Array]:
+    """Return a layer's answer, and what its gradient needs of it: itself, or what was activated."""
+
+    def activate(before: Array, bias: Array) -> Array:
+        return ACTIVATION[name](before + _as_row(bias, before)).astype(numbers)
+
+    def answer(sums: str, rows: Array, kernel: Array, bias: Array) -> tuple[Array, Array]:
+        before = jnp.matmul(rows, kernel.astype(rows.dtype), preferred_element_type=sums)
+        after = (
+            activate(before, bias)
+            if always is None
+            else compute_once(activate, always, before, bias)
+        )
+        return after, after if name == "relu" else before.astype(rows.dtype)
+
+    return _by_platform(answer, rows, kernel, bias)
 
 
-_activated.defvjp(
-    lambda name, numbers, rows, bias, always: (
-        _activated(name, numbers, rows, bias, always),
-        (rows, bias),
-    ),
-    _activated_backward,
-)
+def _layer_forward(
+    name: str, numbers: str, rows: Array, kernel: Array, bias: Array, always: Array | None
+):
+    after, kept = _answer(name, numbers, rows, kernel, bias, always)
+    return after, (rows, kernel, bias, kept)
+
+
+def _layer_backward(name: str, numbers: str, kept: tuple[Array, ...], gradient: Array):
+    rows, kernel, bias, activated = kept
+    if name == "relu":
+        slope = jnp.where(activated > 0, gradient, 0).astype(rows.dtype)
+    else:
+        before = activated + _as_row(bias, activated)
+        (slope,) = jax.vjp(ACTIVATION[name], before)[1](gradient.astype(before.dtype))
+        slope = slope.astype(rows.dtype)
+    return *_product_backward((rows, kernel), slope), _sum_of_rows(slope), None
+
+
+_layer.defvjp(_layer_forward, _layer_backward)
 
 
 @jax.custom_vjp
@@ -139,7 +161,7 @@ def product(
     rows: Float[Array, "*batch inputs"], kernel: Float[Array, "inputs outputs"]
 ) -> Float[Array, "*batch outputs"]:
     """Return rows @ kernel, in the rows' type."""
-    return _rows_by(rows, kernel.astype(rows.dtype))
+    return _rows_by(rows, kernel)
 
 
 def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
@@ -149,15 +171,44 @@ def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array
     of_kernel = jax.lax.dot_general(
         rows, gradient, ((batch, batch), ((), ())), preferred_element_type=kernel.dtype
     )
-    return _rows_by(gradient, kernel.T.astype(rows.dtype)), of_kernel
+    return _rows_by(gradient, kernel.T), of_kernel
 
 
 product.defvjp(lambda rows, kernel: (product(rows, kernel), (rows, kernel)), _product_backward)
 
 
 def _rows_by(rows: Array, kernel: Array) -> Array:
-    def summed_in_float32(rows: Array, kernel: Array) -> Array:
-        return jnp.matmul(rows, kernel, preferred_element_type=jnp.float32).astype(rows.dtype)
+    def by(sums: str, rows: Array, kernel: Array) -> Array:
+        answer = jnp.matmul(rows, kernel.astype(rows.dtype), preferred_element_type=sums)
+        return answer.astype(rows.dtype)
 
-    # A processor's units for matrices answer in float32, and XLA:CPU uses them only if asked to.
-    return jax.lax.platform_dependent(rows, kernel, cpu=summed_in_float32, default=jnp.matmul)
+    return _by_platform(by, rows, kernel)
+
+
+def _sum_of_rows(rows: Array) -> Array:
+    """Return the sum over all but the last axis, float32."""
+
+    def as_product(rows: Array) -> Array:
+        # Of the same rows as the products beside it: a sum would have them once more, in float32.
+        flat = rows.reshape(-1, rows.shape[-1])
+        ones = jnp.ones((1, len(flat)), rows.dtype)
+        return jnp.matmul(ones, flat, preferred_element_type=jnp.float32)[0]
+
+    def plainly(rows: Array) -> Array:
+        return jnp.sum(rows.astype(jnp.float32), axis=tuple(range(rows.ndim - 1)))
+
+    return jax.lax.platform_dependent(rows, cpu=as_product, default=plainly)
+
+
+def _by_platform(function: Callable[..., Any], rows: Array, *others: Array) -> Any:
+    """Return function(type of sums, rows, *others).
+
+    A processor's units for matrices sum bfloat16 in float32, and XLA:CPU uses them only where
+    that is asked for; elsewhere sums that are kept are smaller in the rows' type.
+    """
+    return jax.lax.platform_dependent(
+        rows,
+        *others,
+        cpu=partial(function, "float32"),
+        default=partial(function, rows.dtype.name),
+    )
