@@ -40,6 +40,9 @@ def main(arguments: Sequence[str]) -> None:
     from benchmarks.rival import default_python, require_rival
     from benchmarks.suite import choose, measure
     from benchmarks.table import show
+    from jaxleas.training.config import RunConfig
+    from jaxleas.training.configuration import load_config
+    from jaxleas.training.cores import cores_that_share, use_cores
     from jaxleas.types.errors import InputError, JaxleasError
 
     class SlowerError(JaxleasError):
@@ -52,6 +55,9 @@ def main(arguments: Sequence[str]) -> None:
         for metric in metrics:
             print(f"{metric.name}  [{metric.unit}], {metric.better} is better")
         return
+    config = given.config.resolve() if given.config else CONFIG
+    # A mistake in it is found before anything is measured.
+    use_cores(cores_that_share(load_config(RunConfig, config).ppo))
     _require_device(given.device)
     if given.rivals:
         require_rival(given.rivals)
@@ -79,8 +85,7 @@ def main(arguments: Sequence[str]) -> None:
         )
     rivals = None if given.no_rivals else given.rivals or default_python()
     runs = given.runs or (2 if given.quick else 5)
-    context = Context(runs, rivals, given.config.resolve() if given.config else CONFIG)
-    _ = context.config  # a mistake in it is found before anything is measured
+    context = Context(runs, rivals, config)
     measurements = measure(metrics, context, lambda text: print(text, file=sys.stderr, flush=True))
     comparisons = [
         compare(metric, each, baseline) for metric, each in zip(metrics, measurements, strict=True)

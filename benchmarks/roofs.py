@@ -9,10 +9,12 @@ import numpy as np
 from jax import Array
 
 from benchmarks.arithmetic import LOGITS, Rates, gradient_flops, layers
+from benchmarks.spread import all_devices
 from benchmarks.timing import seconds_a_call
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.training.config import RunConfig
+from jaxleas.training.devices import Devices
 
 LARGE = 2048  # side of the large matrices
 PASSES = 8  # over memory within one call, so that starting it costs nothing
@@ -85,38 +87,67 @@ def _normal(numbers: str, seed: int, *shape: int) -> Array:
     return jax.random.normal(jax.random.key(seed), shape, dtype=jnp.float32).astype(numbers)
 
 
+def _by_all_devices(rate: Callable[[Devices], float]) -> float:
+    """Return the better of one device's rate and all devices', each with a part of its own."""
+    every = Devices.of(jax.devices())
+    return max(rate(Devices.of(jax.devices()[:1])), rate(every) if len(every) > 1 else 0.0)
+
+
+def _product(numbers: str) -> Callable[[Array, Array], Array]:
+    # A processor sums bfloat16 in float32 (`jaxleas.training.networks`).
+    sums = "float32" if jax.default_backend() == "cpu" else numbers
+    return partial(jnp.matmul, preferred_element_type=sums)
+
+
 def _large_products(numbers: str) -> float:
-    left, right = _normal(numbers, 0, LARGE, LARGE), _normal(numbers, 1, LARGE, LARGE)
-    product = jax.jit(jnp.matmul)
-    return 2.0 * LARGE**3 / _seconds(lambda: product(left, right))
+    def rate(devices: Devices) -> float:
+        shape = (len(devices), LARGE, LARGE)
+        operands = _normal(numbers, 0, *shape), _normal(numbers, 1, *shape)
+        left, right = jax.device_put(operands, devices.divided)
+        product = jax.jit(_product(numbers))
+        return len(devices) * 2.0 * LARGE**3 / _seconds(lambda: product(left, right))
+
+    return _by_all_devices(rate)
 
 
 def _network_products(numbers: str, samples: int, inputs: int, *hidden: int) -> float:
     """Time three products a layer, operands ready: forward, weights' and inputs' gradients."""
     networks = [layers(inputs, hidden, outputs) for outputs in (LOGITS, 1)]
-    operands = []
+    flops = samples * sum(gradient_flops(network) for network in networks)
+    return _by_all_devices(lambda devices: flops / _products(numbers, networks, samples, devices))
+
+
+def _products(
+    numbers: str, networks: list[list[tuple[int, int]]], samples: int, devices: Devices
+) -> float:
+    """Return the seconds of the products of one minibatch, divided among devices."""
+    count = len(devices)
+    operands, needed = [], []
     for network in networks:
         for index, (rows, columns) in enumerate(network):
             values = (
-                _normal(numbers, 2, samples, rows),
-                _normal(numbers, 3, rows, columns),
-                _normal(numbers, 4, samples, columns),
+                _normal(numbers, 2, count, samples // count, rows),
+                _normal(numbers, 3, count, rows, columns),
+                _normal(numbers, 4, count, samples // count, columns),
+                _normal(numbers, 5, count, rows, samples // count),
+                _normal(numbers, 6, count, columns, rows),
             )
-            operands.append((*values, index > 0))
-    arrays = [each[:3] for each in operands]
-    needed = [each[3] for each in operands]
+            operands.append(values)
+            needed.append(index > 0)
+    arrays = jax.device_put(operands, devices.divided)
+    by = _product(numbers)
 
     @jax.jit
     def products(arrays):
         results = []
-        for (value, kernel, gradient), input_gradient in zip(arrays, needed, strict=True):
-            results += [value @ kernel, value.T @ gradient]
+        for each, input_gradient in zip(arrays, needed, strict=True):
+            value, kernel, gradient, turned_value, turned_kernel = each
+            results += [by(value, kernel), by(turned_value, gradient)]
             if input_gradient:
-                results.append(gradient @ kernel.T)
+                results.append(by(gradient, turned_kernel))
         return results
 
-    flops = samples * sum(gradient_flops(network) for network in networks)
-    return flops / _seconds(lambda: products(arrays))
+    return _seconds(lambda: products(arrays))
 
 
 def _memory(words: int) -> float:
@@ -124,7 +155,7 @@ def _memory(words: int) -> float:
         lambda array: jax.lax.fori_loop(0, PASSES, lambda _, carry: carry + 1.0, array),
         donate_argnums=0,
     )
-    held = [jnp.zeros(words, dtype=jnp.float32)]
+    held = [jax.device_put(jnp.zeros(words, dtype=jnp.float32), all_devices(words).divided)]
 
     def call() -> Array:
         held[0] = shift(held[0])
@@ -135,8 +166,9 @@ def _memory(words: int) -> float:
 
 def _gather(atlas: Atlas, env: SteeringEnv, robots: int) -> float:
     """Gather heights under robots spread over the atlas, their indices ready."""
-    index = _height_indices(atlas, env, robots)
-    flat = atlas.heights.reshape(-1)
+    devices = all_devices(robots)
+    index = jax.device_put(_height_indices(atlas, env, robots), devices.divided)
+    flat = jax.device_put(atlas.heights.reshape(-1), devices.whole)
 
     @partial(jax.jit, donate_argnums=2)
     def gather(flat, index, heights):
@@ -145,7 +177,7 @@ def _gather(atlas: Atlas, env: SteeringEnv, robots: int) -> float:
 
         return jax.lax.fori_loop(0, PASSES, once, heights)
 
-    held = [jnp.zeros(index.shape, dtype=jnp.float32)]
+    held = [jnp.zeros_like(index, dtype=jnp.float32)]
 
     def call() -> Array:
         held[0] = gather(flat, index, held[0])

@@ -7,6 +7,8 @@ from typing import Any
 
 import jax
 
+from jaxleas.training.loop import MOST_AHEAD
+
 
 def seconds_a_call(call: Callable[[], Any], runs: int, least_seconds: float = 0.5) -> list[float]:
     """Return the seconds a call takes, one mean a run.
@@ -33,3 +35,16 @@ def _mean(call: Callable[[], Any], repeats: int) -> float:
         result = call()
     jax.block_until_ready(result)
     return (time.perf_counter() - begin) / repeats
+
+
+def not_far_ahead(call: Callable[[], Any]) -> Callable[[], Any]:
+    """Return a call that waits for what earlier ones returned, as a training does."""
+    ahead: list[Any] = []
+
+    def patient() -> Any:
+        ahead.append(call())
+        if len(ahead) > MOST_AHEAD:
+            jax.block_until_ready(ahead.pop(0))
+        return ahead[-1]
+
+    return patient

@@ -11,7 +11,8 @@ from jax import Array
 
 from benchmarks.context import Context, changed
 from benchmarks.measurements import Figure, Metric
-from benchmarks.timing import seconds_a_call
+from benchmarks.spread import all_devices
+from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
@@ -50,13 +51,20 @@ def _rates(
     """Return steps a second, one value a run."""
     ppo = context.config.ppo
     walk = _make_walk(env, ppo.unroll, robots, ppo.candidates if restarts else 0)
-    held = [_begin(env, world, robots)]
+    devices = all_devices(robots)
+    world = jax.device_put(world, devices.whole)
+    episode, observation, key = _begin(env, world, robots)
+    walking = jax.device_put((episode, observation), devices.divided)
+    held = [(*walking, jax.device_put(key, devices.whole))]
 
     def call() -> Array:
         held[0], total = walk(world, held[0])
         return total
 
-    return [robots * ppo.unroll / seconds for seconds in seconds_a_call(call, context.runs)]
+    return [
+        robots * ppo.unroll / seconds
+        for seconds in seconds_a_call(not_far_ahead(call), context.runs)
+    ]
 
 
 def _begin(env: SteeringEnv, world: World, robots: int):

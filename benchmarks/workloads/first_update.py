@@ -14,6 +14,8 @@ import jax  # noqa: E402
 from jaxleas.training.compilation import keep_compiled_programs  # noqa: E402
 from jaxleas.training.config import RunConfig  # noqa: E402
 from jaxleas.training.configuration import load_config  # noqa: E402
+from jaxleas.training.cores import cores_that_share, use_cores  # noqa: E402
+from jaxleas.training.devices import choose_devices  # noqa: E402
 from jaxleas.training.loop import Trainer  # noqa: E402
 
 
@@ -22,7 +24,9 @@ def main() -> None:
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     keep_compiled_programs()
     imported = time.perf_counter()
-    trainer = Trainer(load_config(RunConfig, sys.argv[1]))
+    config = load_config(RunConfig, sys.argv[1])
+    use_cores(cores_that_share(config.ppo))
+    trainer = Trainer(config, devices=choose_devices("all", config.ppo))
     prepared = time.perf_counter()
     state = trainer.fresh_state()
     jax.block_until_ready(state)

@@ -10,10 +10,11 @@ from jax import Array
 
 from benchmarks.context import Context, changed
 from benchmarks.measurements import Figure, Metric
-from benchmarks.timing import seconds_a_call
+from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
 from jaxleas.envs.steering.layout import ICRA81
 from jaxleas.training.config import RunConfig
+from jaxleas.training.devices import choose_devices
 from jaxleas.training.loop import Trainer
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
@@ -61,7 +62,7 @@ def _measure(
     limited: bool = True,
 ) -> dict[str, Figure]:
     """Return steps a second, and the memory of the compiled step [MiB]."""
-    trainer = Trainer(config)
+    trainer = Trainer(config, devices=choose_devices("all", config.ppo))
     held = [trainer.fresh_state()]
     step = trainer.train_step.lower(trainer.world, held[0]).compile()  # type: ignore[attr-defined]
 
@@ -69,7 +70,7 @@ def _measure(
         held[0], metrics = step(trainer.world, held[0])
         return metrics
 
-    seconds = seconds_a_call(call, context.runs)
+    seconds = seconds_a_call(not_far_ahead(call), context.runs)
     speed = Figure(
         [config.ppo.batch / each for each in seconds],
         context.ppo_limit(config, trainer.env) if limited else None,

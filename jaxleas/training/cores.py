@@ -11,6 +11,8 @@ import jax
 
 from jaxleas.training.config import PpoConfig
 
+LEAST_ROBOTS = 16  # of a minibatch, for each core: with fewer they mostly wait for each other
+
 
 def cores() -> int:
     """Return how many cores this process may use."""
@@ -33,6 +35,7 @@ def use_cores(count: int) -> None:
 
 
 def cores_that_share(ppo: PpoConfig) -> int:
-    """Return the most cores that share the robots of a minibatch evenly."""
+    """Return the most cores that share the robots of a minibatch evenly, and not too few each."""
     robots = ppo.environments // ppo.minibatches
-    return max(count for count in range(1, cores() + 1) if robots % count == 0)
+    most = max(1, min(cores(), robots // LEAST_ROBOTS))
+    return max(count for count in range(1, most + 1) if robots % count == 0)
