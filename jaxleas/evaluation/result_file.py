@@ -6,9 +6,8 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.files import read_json, require_version, typed, write_json
+from jaxleas.files import read_typed, write_json
 from jaxleas.types.bounds import Count, Fraction, NonNegative
-from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
 VERSION = 1
@@ -135,8 +134,4 @@ def read_evaluation(path: str | Path) -> Evaluation:
     Raises:
         InputError: the file is missing, or a key (named) is missing, unknown or out of range.
     """
-    content = read_json(path)
-    if not isinstance(content, dict):
-        raise InputError(f"{path} is not an evaluation: it needs an object with `suite`, `cells`")
-    require_version(content, VERSION, path)
-    return typed(Evaluation, content, f"{path} is not an evaluation")
+    return read_typed(Evaluation, path, "evaluation", VERSION)

@@ -5,25 +5,30 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from jaxleas.files.reading import read_json
+from jaxleas.files.reading import read_json, require_version
 from jaxleas.types.errors import InputError
 
 T = TypeVar("T")
 
 
-def read_typed(kind: type[T] | Any, path: str | Path, what: str) -> T:
+def read_typed(kind: type[T] | Any, path: str | Path, what: str, version: int | None = None) -> T:
     """Return what a JSON file holds, as a value of a type.
 
     Args:
         kind: a pydantic model, a dataclass, a TypedDict, or lists and mappings of them.
         path: of the file.
         what: it should be: "figure file".
+        version: that is read. Looked at first: a file of another one may well be of another form,
+            and its version is then what is wrong with it.
 
     Raises:
         InputError: the file cannot be read, or is no such thing: the first key that is wrong is
             named.
     """
-    return typed(kind, read_json(path), f"{path} is no {what}")
+    content = read_json(path)
+    if version is not None and isinstance(content, dict):
+        require_version(content, version, path)
+    return typed(kind, content, f"{path} is no {what}")
 
 
 def typed(kind: type[T] | Any, value: Any, sentence: str) -> T:

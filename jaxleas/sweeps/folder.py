@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from uuid import uuid4
 
-from jaxleas.files import FolderLock, read_typed, require_version, write_json, write_text
+from jaxleas.files import FolderLock, read_typed, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
 from jaxleas.training.config import RunConfig
@@ -83,8 +83,7 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
             write_text(path / "sweep.yaml", to_yaml(sweep.config))
             write_text(path / "base.yaml", to_yaml(sweep.base))
             write_json(known, asdict(_Record(sweep.name, uuid4().hex)))
-        record = read_typed(_Record, known, "record of a sweep")
-        require_version(asdict(record), VERSION, known)
+        record = read_typed(_Record, known, "record of a sweep", VERSION)
         _require_same(path, sweep)
         return SweepFolder(path, record.owner, lock)
     except BaseException:

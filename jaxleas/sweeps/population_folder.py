@@ -14,7 +14,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from jaxleas.files import read_json, require_version, typed, write_json
+from jaxleas.files import read_typed, write_json
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
 from jaxleas.sweeps.folder import hold, require_vacant
@@ -67,7 +67,4 @@ def _read(file: Path) -> _Record:
     Raises:
         InputError: it is of another version, or damaged.
     """
-    content = read_json(file)
-    if isinstance(content, dict):
-        require_version(content, VERSION, file)
-    return typed(_Record, content, f"{file} is no record of a population")
+    return read_typed(_Record, file, "record of a population", VERSION)

@@ -90,7 +90,7 @@ def test_labels_are_counted(run):
             lambda run: write_json(run / "rounds.json", {"rounds": [{}]}),
             "rounds.0.round: Field",
         ),
-        (lambda run: write_json(run / "evaluation" / "x.json", {}), "is not an evaluation"),
+        (lambda run: write_json(run / "evaluation" / "x.json", {}), "is no evaluation"),
         (lambda run: write_json(run / "evaluation" / "figures.json", {}), "no figure file"),
     ],
 )

@@ -79,7 +79,7 @@ def test_what_is_no_evaluation_is_refused_by_key(tmp_path, change, said):
 def test_other_json_and_missing_files_are_refused(tmp_path):
     path = tmp_path / "list.json"
     path.write_text("[]")
-    with pytest.raises(InputError, match="not an evaluation"):
+    with pytest.raises(InputError, match="no evaluation"):
         read_evaluation(path)
     with pytest.raises(InputError, match="does not exist"):
         read_evaluation(tmp_path / "none.json")

@@ -62,7 +62,7 @@ def test_a_training_that_begins_is_running_not_damaged(tmp_path: Path) -> None:
         ("provenance.json", '{"git": 3, "command": [], "created": 1}', "cannot be understood"),
         ("metrics.jsonl", "nonsense\n", "line 1 is not valid JSON"),
         ("metrics.jsonl", '{"step": "a", "seconds": []}\n', "metrics.jsonl is damaged: line 1"),
-        ("evaluation/hole.json", "{}", "is not an evaluation"),
+        ("evaluation/hole.json", "{}", "is no evaluation"),
     ],
 )
 def test_damage_is_a_sentence(tmp_path: Path, capsys, name, content, problem) -> None:

@@ -37,7 +37,7 @@ def test_files_of_a_sweep(tmp_path, name, content, read, said):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [([], "sweep.json is no record"), ({"name": "x", "owner": "y", "version": 2}, "of version 2")],
+    [([], "sweep.json is no record"), ({"trials": [], "version": 2}, "of version 2")],
 )
 def test_the_record_of_a_sweep(tmp_path, content, said):
     sweep = open_sweep(write_sweep(tmp_path))
