@@ -62,7 +62,8 @@ def _measure(
     limited: bool = True,
 ) -> dict[str, Figure]:
     """Return steps a second, and the memory of the compiled step [MiB]."""
-    trainer = Trainer(config, devices=choose_devices("all", config.ppo))
+    devices = choose_devices("all", config.ppo)
+    trainer = Trainer(config, devices=devices)
     held = [trainer.fresh_state()]
     step = trainer.train_step.lower(trainer.world, held[0]).compile()  # type: ignore[attr-defined]
 
@@ -76,7 +77,10 @@ def _measure(
         context.ppo_limit(config, trainer.env) if limited else None,
         context.rival.figure(rival) if rival else None,
     )
-    return {name: speed, memory_name(name): Figure([step_memory(step)])}
+    each = step_memory(step)
+    # The compiler counts for one device; cores have one memory.
+    sharing = len(devices) if jax.default_backend() == "cpu" else 1
+    return {name: speed, memory_name(name): Figure([None if each is None else sharing * each])}
 
 
 def memory_name(name: str) -> str:
@@ -85,7 +89,7 @@ def memory_name(name: str) -> str:
 
 
 def step_memory(step: jax.stages.Compiled) -> float | None:
-    """Return what a compiled step holds at once: terrain, state, batch, temporaries [MiB].
+    """Return what a compiled step holds on a device: terrain, state, batch, temporaries [MiB].
 
     None where the device's compiler does not count it.
     """
