@@ -74,7 +74,7 @@ def step_work(config: RunConfig, env: SteeringEnv) -> StepWork:
     return StepWork(
         walk_flops=forward_flops(actor),
         learn_flops=epochs * (gradient_flops(actor) + gradient_flops(critic)),
-        learn_bytes=size * (FLOAT + epochs * jnp.dtype(config.network.products).itemsize),
+        learn_bytes=size * (FLOAT + epochs * jnp.dtype(config.network.product_type).itemsize),
         env_bytes=FLOAT * env_words(env),
         env_heights=len(env.points_in_root),
     )

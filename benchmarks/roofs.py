@@ -44,7 +44,7 @@ class Roofs:
         words = robots * (len(env.points_in_root) + env.layout.size)
         fastest = float("inf")
         if matrix:
-            large = self.large_products(config.network.products)
+            large = self.large_products(config.network.product_type)
             fastest = max(large, self.network_products(config, env))
         return Rates(
             matrix=fastest,
@@ -60,7 +60,7 @@ class Roofs:
         """Return the rate of the products of one minibatch's gradient, and of nothing else."""
         samples = config.ppo.batch // config.ppo.minibatches
         sizes = (samples, env.layout.size, *config.network.hidden)
-        numbers = config.network.products
+        numbers = config.network.product_type
         return self._once(("network", numbers, *sizes), lambda: _network_products(numbers, *sizes))
 
     def memory(self, words: int) -> float:

@@ -16,7 +16,7 @@ def _gather(context: Context) -> dict[str, Figure]:
 
 
 def _products(context: Context) -> dict[str, Figure]:
-    roofs, numbers = context.roofs, context.config.network.products
+    roofs, numbers = context.roofs, context.config.network.product_type
     return {
         "ppo_roof_large_products": Figure([roofs.large_products(numbers) / 1e9]),
         "ppo_roof_network_products": Figure(

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, JsonValue
 
 from jaxleas.surrogates.fit import FitSettings
-from jaxleas.training.config import RunConfig
+from jaxleas.training.config import RunConfig, TerrainConfig
 from jaxleas.types.bounds import Count, NonNegative, Positive, Seed, Whole
 from jaxleas.types.strict import Strict
 
@@ -58,6 +58,9 @@ class PracticeConfig(Strict):
     """Speed towards the goal [m/s]; that of the policy's own training by default."""
     reward: dict[RewardTerm, NonNegative] = Field(default_factory=dict)
     """Weights of the reward that differ from those of the policy's own training (env.reward)."""
+    terrain: TerrainConfig | None = None
+    """That guide paths to be labelled and practice walk on; that of the policy's own training by
+    default."""
 
 
 class FaithfulConfig(Strict):

@@ -48,7 +48,9 @@ class Workplace:
         """
         self.config, self.folder, self._start = config, folder, start
         self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
-        self.run_config, self.learned = widen(*read_run(start), config.practice.observation)
+        own, self.learned = widen(*read_run(start), config.practice.observation)
+        terrain = config.practice.terrain or own.terrain
+        self.run_config = own.model_copy(update={"terrain": terrain})
         self.env = SteeringEnv(self.run_config.env)
         self.workers = ProcessWorkers(processes)
         self.judge = Judge(config.planner, self.settings, workers=self.workers)

@@ -52,7 +52,8 @@ def evaluate(
 
     Args:
         run: a run folder, a policy.npz or an .onnx file.
-        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps or thesis.
+        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps, tables
+            or thesis.
         starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
         json: where to write the result as well; a run folder keeps the one of most starts in
             RUN/evaluation/.

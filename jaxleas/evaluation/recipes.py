@@ -98,6 +98,14 @@ FOOTSTEPS = tuple(
 )
 """T figs. 5.6 and 5.8: what the planners of chapter 5 were asked about."""
 
+TABLES = tuple(
+    row
+    for row in THESIS
+    if row.aim == "goal"
+    and row.scenario in ("rotation", "hole_rim", "bridge_ahead", "wall", "rubble", "stairs_up")
+)
+"""T tables 4.1 to 4.3 and 4.3.2 (B2): what the sampling-based planner was asked about."""
+
 RECIPES: Mapping[str, Recipe] = MappingProxyType(
     {
         # T table 3.3; 600 steps walk 12 m at the desired speed, twice the longest crossing.
@@ -120,6 +128,7 @@ RECIPES: Mapping[str, Recipe] = MappingProxyType(
             in_report=False,
         ),
         "footsteps": Recipe(FOOTSTEPS, starts=200, steps=800, starts_per_scene=10, in_report=False),
+        "tables": Recipe(TABLES, starts=200, steps=800, starts_per_scene=10, in_report=False),
         "thesis": Recipe(THESIS, starts=100, steps=800, starts_per_scene=10, in_report=False),
     }
 )

@@ -54,9 +54,19 @@ class NetworkConfig(Strict):
     activation: Literal["relu", "tanh", "swish", "elu"] = "relu"
     normaliser: Literal["affine", "running"] = "affine"
     """`affine`: fixed, from the observation's bounds; `running`: Brax's running statistics."""
-    products: Literal["float32", "bfloat16"] = "float32"
-    """In what numbers training multiplies matrices and keeps what lies between layers: `bfloat16`
-    is faster on a GPU. Weights, sums, and what is judged and exported are float32 all the same."""
+    products: Literal["float32", "bfloat16", "auto"] = "float32"
+    """In what numbers training multiplies matrices and keeps what lies between layers: `auto` is
+    `bfloat16` where the device has units for it (GPUs, processors with AMX), `float32` elsewhere.
+    Weights, sums, and what is judged and exported are float32 all the same."""
+
+    @property
+    def product_type(self) -> Literal["float32", "bfloat16"]:
+        """In what numbers this machine multiplies."""
+        if self.products != "auto":
+            return self.products
+        from jaxleas.training.matrix_units import native_products  # asks JAX for its devices
+
+        return native_products()
 
 
 class PpoConfig(Strict):

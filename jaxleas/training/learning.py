@@ -39,7 +39,7 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
     share = None if devices is None or len(devices) == 1 else devices.share
 
     def seen(observation: Array, normaliser: Normaliser) -> Array:
-        return normalise(observation, normaliser).astype(network.products)
+        return normalise(observation, normaliser).astype(network.product_type)
 
     def learn(
         state: TrainState,

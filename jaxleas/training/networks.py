@@ -96,8 +96,8 @@ def dense(
             for a gradient, whose products want them turned round.
     """
     *inner, (kernel, bias) = layers_of(params)
-    types = [config.products] * (len(inner) - 1) + ["float32"]
-    hidden = hidden.astype(config.products if inner else "float32")
+    types = [config.product_type] * (len(inner) - 1) + ["float32"]
+    hidden = hidden.astype(config.product_type if inner else "float32")
     for (inner_kernel, inner_bias), numbers in zip(inner, types, strict=False):
         hidden = _layer(config.activation, numbers, hidden, inner_kernel, inner_bias, always)
     return product(hidden, kernel) + _as_row(bias, hidden)

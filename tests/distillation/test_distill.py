@@ -9,12 +9,15 @@ from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.opening import open_folder
 from jaxleas.distillation.practice import practice_config, read_run
+from jaxleas.distillation.workplace import Workplace
 from jaxleas.files import read_json
 from jaxleas.surrogates import read_surrogate
+from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.loop import train
 from jaxleas.training.policy import read_policy
 from jaxleas.training.run_folder import RunFolder
+from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
 
 from ..training.runs import ROOT, tiny
@@ -63,6 +66,27 @@ def test_what_was_learned_is_read_and_carried_over(start):
     assert practice.network == config.network
     assert practice.env.reward.failure == config.ppo.final_failure
     assert practice.ppo.steps == DistillationConfig().practice.steps
+
+
+def test_labels_and_practice_may_walk_on_another_terrain(start, tmp_path):
+    own, _ = read_run(start)
+    kept = Workplace(DistillationConfig(), DistillationFolder(tmp_path), start, 1)
+    assert kept.run_config.terrain == own.terrain
+    detours = {"arenas": 6, "shares": {"detour": 1.0}, "generator": {"detour_probability": 1.0}}
+    config = DistillationConfig.model_validate({"practice": {"terrain": detours}})
+    place = Workplace(config, DistillationFolder(tmp_path), start, 1)
+    practice = practice_config(config, place.run_config)
+    assert practice.terrain == config.practice.terrain != own.terrain
+    terrain = practice.terrain
+    arenas = [generate_arena(terrain.generator, terrain.first_seed + k) for k in range(6)]
+    assert {link.kind for arena in arenas for link in arena.links} >= {"detour"}
+    for scene, arena in zip(place.ground.scenes, arenas, strict=True):
+        assert scene.surfaces.keys() == arena.scene.surfaces.keys()
+        np.testing.assert_array_equal(
+            np.concatenate(list(scene.surfaces.values())),
+            np.concatenate(list(arena.scene.surfaces.values())),
+        )
+    assert place.ground.world.map_index.tolist() == training_world(practice).map_index.tolist()
 
 
 def test_practice_may_ask_for_another_speed_and_reward(start):

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from jaxleas.evaluation import published
 from jaxleas.evaluation.suites import (
     MAX_SEED,
     MAX_STARTS,
@@ -48,6 +49,20 @@ def test_footsteps_are_those_cells_of_the_thesis_that_chapter_5_asks_about():
     for cell in suite.cells:
         assert cell.yaw == 0.0
         assert suite.steps_of(cell) == thesis.steps_of(same[cell.key])
+
+
+def test_tables_are_those_cells_of_the_thesis_that_its_printed_tables_have():
+    suite, thesis = make_suite("tables", 10), make_suite("thesis", 10)
+    keys = {(cell.name, cell.yaw, cell.speed) for cell in suite.cells}
+    printed = {
+        (row.cell, row.yaw, row.speed)
+        for table in published.thesis().tables
+        if table.table.startswith("4.")
+        for row in table.rows
+    }
+    assert keys == printed | {("wall", 0.0, 0.04)}
+    assert {cell.key for cell in suite.cells} <= {cell.key for cell in thesis.cells}
+    assert not {"long_course", "circuit"} & {cell.name for cell in suite.cells}  # they take an hour
 
 
 def test_no_seed_is_ever_trained_or_held_out_on():
