@@ -251,7 +251,7 @@ class _Session:
             state, metrics = self.trainer.train_step(self.trainer.world, state)
             done += 1
             pending.append((done, metrics))
-            if len(pending) > MOST_AHEAD:
+            if len(pending) >= MOST_AHEAD:
                 jax.block_until_ready(pending[-MOST_AHEAD][1])
             due = done % config.held_out.every == 0 or done == config.ppo.updates
             # Several processes decide together, where they wait for each other anyway.
