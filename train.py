@@ -73,25 +73,28 @@ def _open(
 ) -> "tuple[RunConfig, Devices, RunFolder]":
     from jaxleas.training.config import RunConfig
     from jaxleas.training.configuration import load_config, to_yaml
-    from jaxleas.training.cores import cores_that_share, use_cores
-    from jaxleas.training.devices import choose_devices
     from jaxleas.training.run_folder import RunFolder
     from jaxleas.training.watching import require_watchers
 
     if given.resume:
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
         config = load_config(RunConfig, run.config)
-        if given.coordinator is None:
-            use_cores(cores_that_share(config.ppo))
-        return config, choose_devices(given.devices, config.ppo), run
+        return config, _devices(given, config), run
     config = load_config(RunConfig, given.config, overrides)
     require_watchers(config.watch)  # before a folder is made
-    if given.coordinator is None:
-        use_cores(cores_that_share(config.ppo))
-    devices = choose_devices(given.devices, config.ppo)
+    devices = _devices(given, config)
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
     return config, devices, run
+
+
+def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
+    from jaxleas.training.cores import share_cores
+    from jaxleas.training.devices import choose_devices
+
+    if given.coordinator is None:  # several processes share the cores among themselves
+        share_cores(config.ppo)
+    return choose_devices(given.devices, config.ppo)
 
 
 def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> None:

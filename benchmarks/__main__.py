@@ -42,7 +42,7 @@ def main(arguments: Sequence[str]) -> None:
     from benchmarks.table import show
     from jaxleas.training.config import RunConfig
     from jaxleas.training.configuration import load_config
-    from jaxleas.training.cores import cores_that_share, use_cores
+    from jaxleas.training.cores import share_cores
     from jaxleas.types.errors import InputError, JaxleasError
 
     class SlowerError(JaxleasError):
@@ -57,7 +57,7 @@ def main(arguments: Sequence[str]) -> None:
         return
     config = given.config.resolve() if given.config else CONFIG
     # A mistake in it is found before anything is measured.
-    use_cores(cores_that_share(load_config(RunConfig, config).ppo))
+    share_cores(load_config(RunConfig, config).ppo)
     _require_device(given.device)
     if given.rivals:
         require_rival(given.rivals)

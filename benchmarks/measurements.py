@@ -1,7 +1,6 @@
 """What is measured, what came out, and the JSON file that holds it."""
 
 import math
-import os
 import platform
 import statistics
 from collections.abc import Sequence
@@ -13,6 +12,7 @@ import jax
 from pydantic import ValidationError
 
 from jaxleas.files import read_json, write_json
+from jaxleas.training.cores import cores
 from jaxleas.types.errors import InputError
 from jaxleas.types.strict import Strict
 
@@ -145,10 +145,9 @@ def this_machine() -> str:
         name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model n"))
     except (OSError, StopIteration):
         pass
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     kinds = [each.device_kind for each in jax.devices() if each.platform != "cpu"]
     devices = "".join(f"; {kinds.count(kind)} x {kind}" for kind in sorted(set(kinds)))
-    return f"{name}, {cores} cores{devices}"
+    return f"{name}, {cores()} cores{devices}"
 
 
 def _times_better(value: float | None, other: float | None, better: Better) -> float | None:

@@ -2,10 +2,11 @@
 
 import jax
 
+from jaxleas.training.cores import most_that_divide
 from jaxleas.training.devices import Devices
 
 
 def all_devices(count: int) -> Devices:
     """Return JAX's devices, as many as share so many robots evenly."""
     there = jax.devices()
-    return Devices.of(there[: max(n for n in range(1, len(there) + 1) if count % n == 0)])
+    return Devices.of(there[: most_that_divide(count, len(there))])

@@ -42,9 +42,10 @@ def not_far_ahead(call: Callable[[], Any]) -> Callable[[], Any]:
     ahead: list[Any] = []
 
     def patient() -> Any:
-        ahead.append(call())
-        if len(ahead) > MOST_AHEAD:
+        answer = call()
+        ahead.append(answer)
+        if len(ahead) >= MOST_AHEAD:
             jax.block_until_ready(ahead.pop(0))
-        return ahead[-1]
+        return answer
 
     return patient

@@ -14,7 +14,7 @@ import jax  # noqa: E402
 from jaxleas.training.compilation import keep_compiled_programs  # noqa: E402
 from jaxleas.training.config import RunConfig  # noqa: E402
 from jaxleas.training.configuration import load_config  # noqa: E402
-from jaxleas.training.cores import cores_that_share, use_cores  # noqa: E402
+from jaxleas.training.cores import share_cores  # noqa: E402
 from jaxleas.training.devices import choose_devices  # noqa: E402
 from jaxleas.training.loop import Trainer  # noqa: E402
 
@@ -25,7 +25,7 @@ def main() -> None:
     keep_compiled_programs()
     imported = time.perf_counter()
     config = load_config(RunConfig, sys.argv[1])
-    use_cores(cores_that_share(config.ppo))
+    share_cores(config.ppo)
     trainer = Trainer(config, devices=choose_devices("all", config.ppo))
     prepared = time.perf_counter()
     state = trainer.fresh_state()

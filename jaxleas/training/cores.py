@@ -16,7 +16,9 @@ LEAST_ROBOTS = 16  # of a minibatch, for each core: with fewer they mostly wait 
 
 def cores() -> int:
     """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0))
+    if hasattr(os, "sched_getaffinity"):  # not on every operating system
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def use_cores(count: int) -> None:
@@ -34,8 +36,17 @@ def use_cores(count: int) -> None:
             jax.config.update("jax_num_cpu_devices", count)
 
 
+def share_cores(ppo: PpoConfig) -> None:
+    """Let JAX take as many cores as share a training; to be called before it touches any."""
+    use_cores(cores_that_share(ppo))
+
+
 def cores_that_share(ppo: PpoConfig) -> int:
     """Return the most cores that share the robots of a minibatch evenly, and not too few each."""
     robots = ppo.environments // ppo.minibatches
-    most = max(1, min(cores(), robots // LEAST_ROBOTS))
+    return most_that_divide(robots, max(1, min(cores(), robots // LEAST_ROBOTS)))
+
+
+def most_that_divide(robots: int, most: int) -> int:
+    """Return the largest number up to `most` that divides so many robots evenly."""
     return max(count for count in range(1, most + 1) if robots % count == 0)

@@ -140,8 +140,7 @@ def mirror_images(
 
     The task is symmetric, so a mirrored step is as good as a walked one; its probability under the
     old policy is taken to be the original's, exact once the policy is symmetric. Mirrored once an
-    update: a minibatch then takes whole rows. It takes them twice, as XLA:CPU computes them anew
-    where they are needed turned round, so it must be cheap.
+    update: a minibatch then takes whole rows.
 
     Args:
         env: the task.

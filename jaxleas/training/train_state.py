@@ -86,6 +86,8 @@ class Learned:
 def make_optimiser(config: PpoConfig, params: PpoParams) -> optax.GradientTransformation:
     """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4).
 
+    It makes the state; `adam.descend` is its update, written out, and a test holds them together.
+
     Args:
         config: how many gradient steps there will be.
         params: learning rates and longest gradient, constants or traced.
