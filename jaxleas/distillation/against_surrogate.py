@@ -11,6 +11,7 @@ from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
 from jaxleas.surrogates import (
     Surrogate,
+    SurrogateForesight,
     fit,
     read_labels,
     read_surrogate,
@@ -42,7 +43,8 @@ class AgainstSurrogate:
         if not folder.practised.is_file():
             say(f"round {number}: practice")
             config = practice_config(place.config, place.run_config)
-            practise(folder, config, surrogate, before.learned, place.config.practice.threshold)
+            foresight = SurrogateForesight(surrogate, place.config.practice.threshold)
+            practise(folder, config, foresight, before.learned, place.devices)
         seconds["practice"] = read_done(folder.practised, "seconds")["seconds"]
         learned = read_run(folder.run)[1]
         policy, report = read_policy(folder.policy), surrogate.report
@@ -59,7 +61,7 @@ class AgainstSurrogate:
                 policy,
                 self._surrogate,
                 place.config.planner,
-                place.settings,
+                place.labelling,
                 place.config.collect,
                 place.config.seed + number,
                 place.workers,

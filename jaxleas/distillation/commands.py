@@ -27,13 +27,15 @@ def distill(
     from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
-    from jaxleas.distillation.opening import open_folder, train_start
+    from jaxleas.distillation.opening import first_run, open_folder, train_start
     from jaxleas.distillation.table import table_of
     from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
     from jaxleas.labels.own_planner import require_said
     from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.training.configuration import load_config
+    from jaxleas.training.cores import share_cores
+    from jaxleas.training.devices import choose_devices
 
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
@@ -43,8 +45,12 @@ def distill(
     require_said(config, asked.planner, planner)
     settled = open_folder(folder, asked, start)
     with FolderLock(folder.path, "the distillation", "give another --out"):
-        run = train_start(folder, settled)
-        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1)
+        ppo = first_run(folder, settled).ppo
+        if settled.mode == "surrogate":
+            share_cores(ppo)
+        devices = choose_devices("all", ppo)
+        run = train_start(folder, settled, devices)
+        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1, devices)
         results = run_rounds(place, _Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""

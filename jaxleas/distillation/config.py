@@ -1,9 +1,9 @@
 """What a distillation is told: which planner, how many rounds, and what is done in each."""
 
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, JsonValue
+from pydantic import AfterValidator, Field, JsonValue, model_validator
 
 from jaxleas.surrogates.fit import FitSettings
 from jaxleas.training.config import RunConfig, TerrainConfig
@@ -29,6 +29,9 @@ class CollectConfig(Strict):
     """In the first round, when nothing is known."""
     later_guides: Count = 8_000
     """In each round after it."""
+    parameters: dict[str, JsonValue] = Field(default_factory=dict)
+    """Of the planner that labels, where they differ from those of the planner that judges: one with
+    less freedom fails sooner, and a policy that keeps clear of its failures keeps a margin."""
     steps: Count = 150
     """Of a guide path: turning and setting foot on a transition happen in the first hundred."""
     disturbances: tuple[NonNegative, ...] = (0.0, 0.15, 0.3, 0.6)
@@ -103,3 +106,17 @@ class DistillationConfig(Strict):
     practice: PracticeConfig = PracticeConfig()
     faithful: FaithfulConfig = FaithfulConfig()
     judge: JudgeConfig = JudgeConfig()
+
+    @property
+    def labelling_parameters(self) -> dict[str, JsonValue]:
+        """Of the planner that labels."""
+        return self.parameters | self.collect.parameters
+
+    @model_validator(mode="after")
+    def _one_planner_in_the_loop(self) -> Self:
+        if self.mode == "faithful" and self.collect.parameters:
+            raise ValueError(
+                "collect.parameters are of a planner that labels, and in mode faithful nothing is"
+                " labelled: leave them out, or give parameters"
+            )
+        return self

@@ -57,7 +57,7 @@ def _begin(place: Workplace, say: Say) -> Practised:
     if not folder.practised.is_file():
         say("round 0: practice without surrogate")
         config = practice_config(place.config, place.run_config, steps)
-        practise(folder, config, None, place.learned, 0.0)
+        practise(folder, config, None, place.learned, place.devices)
     return Practised(read_policy(folder.policy), read_run(folder.run)[1])
 
 

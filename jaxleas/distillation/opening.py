@@ -6,7 +6,9 @@ from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
 from jaxleas.files import write_json, write_text
 from jaxleas.labels.settings import settings_from
+from jaxleas.training.config import RunConfig
 from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
 from jaxleas.training.run_folder import RunFolder
 from jaxleas.types.errors import InputError
@@ -23,6 +25,7 @@ def open_folder(
             no run folder.
     """
     settings_from(config.planner, **config.parameters)
+    settings_from(config.planner, **config.labelling_parameters)
     if start is not None:
         RunFolder.open(start)
     where = None if start is None else str(Path(start).resolve())
@@ -46,8 +49,25 @@ def open_folder(
     return config
 
 
-def train_start(folder: DistillationFolder, config: DistillationConfig) -> Path:
+def first_run(folder: DistillationFolder, config: DistillationConfig) -> RunConfig:
+    """Return the configuration of the run that is begun with, or is yet to be trained.
+
+    Raises:
+        InputError: this is no distillation's folder, or what it names is no run folder.
+    """
+    where = read_begun_with(folder.begun_with)
+    return config.run if where is None else load_config(RunConfig, RunFolder.open(where).config)
+
+
+def train_start(
+    folder: DistillationFolder, config: DistillationConfig, devices: Devices
+) -> Path:
     """Return the run folder of the policy to begin with, trained first where none was given.
+
+    Args:
+        folder: of the distillation.
+        config: of the distillation.
+        devices: that share a training.
 
     Raises:
         InputError: this is no distillation's folder.
@@ -60,5 +80,5 @@ def train_start(folder: DistillationFolder, config: DistillationConfig) -> Path:
     else:
         run = RunFolder.create(folder.start, to_yaml(config.run), ["jaxleas", "distill"])
     with run:
-        train(load_config(type(config.run), run.config), run)
+        train(load_config(RunConfig, run.config), run, devices=devices)
     return folder.start

@@ -5,14 +5,15 @@ from pathlib import Path
 
 import jax
 
+from jaxleas.conditions import Foresight
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import write_json
-from jaxleas.surrogates import Surrogate, SurrogateForesight
 from jaxleas.training.checkpoints import Checkpoints
 from jaxleas.training.config import NetworkConfig, RunConfig
 from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
 from jaxleas.training.networks import initial_normaliser, make_networks
 from jaxleas.training.policy import policy_of, write_policy
@@ -51,9 +52,9 @@ def practice_config(
 def practise(
     folder: RoundFolder,
     config: RunConfig,
-    surrogate: Surrogate | None,
+    foresight: Foresight | None,
     learned: Learned,
-    threshold: float,
+    devices: Devices,
 ) -> None:
     """Train in the round's run folder; an interrupted practice is gone on with.
 
@@ -63,18 +64,17 @@ def practise(
     Args:
         folder: of the round.
         config: of the run.
-        surrogate: that ends episodes, beside reachability and collision, if any.
+        foresight: that ends episodes, beside reachability and collision, if any.
         learned: to begin with.
-        threshold: the risk dial.
+        devices: that share it.
     """
     begun = time.perf_counter()
     if (folder.run / "config.yaml").is_file():
         run = RunFolder.open(folder.run, writing=True, needs_checkpoint=False)
     else:
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
-    foresight = None if surrogate is None else SurrogateForesight(surrogate, threshold)
     with run:
-        train(config, run, foresight=foresight, learned=learned)
+        train(config, run, devices=devices, foresight=foresight, learned=learned)
     conclude(folder, config, time.perf_counter() - begun)
 
 

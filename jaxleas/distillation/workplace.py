@@ -12,6 +12,7 @@ from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
 from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import Identity
 from jaxleas.terrain.generator import generate_arena
+from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import SteeringPolicy, read_policy
 from jaxleas.training.worlds import training_world
 
@@ -24,16 +25,23 @@ class Workplace:
     Attributes:
         config: of the distillation.
         folder: it lives in.
-        settings: of the planner, resolved.
+        settings: of the planner that judges, resolved.
+        labelling: of the planner that labels, likewise.
         run_config: of the policy's training, seen by the layout it practises with.
         learned: by the policy before.
         env: its task.
+        devices: that share the practice.
         workers: that ask the planner.
         judge: the planner over them.
     """
 
     def __init__(
-        self, config: DistillationConfig, folder: DistillationFolder, start: str, processes: int
+        self,
+        config: DistillationConfig,
+        folder: DistillationFolder,
+        start: str,
+        processes: int,
+        devices: Devices | None = None,
     ):
         """Prepare; nothing is computed yet.
 
@@ -42,12 +50,17 @@ class Workplace:
             folder: to work in.
             start: run folder of the policy to begin with.
             processes: that ask the planner.
+            devices: that share the practice; by default the first.
 
         Raises:
             InputError: the planner's parameters cannot be used, or there is no such run.
         """
         self.config, self.folder, self._start = config, folder, start
         self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
+        self.labelling: PlannerSettings = settings_from(
+            config.planner, **config.labelling_parameters
+        )
+        self.devices = devices or one_device()
         own, self.learned = widen(*read_run(start), config.practice.observation)
         terrain = config.practice.terrain or own.terrain
         self.run_config = own.model_copy(update={"terrain": terrain})
@@ -74,7 +87,7 @@ class Workplace:
         env = self.run_config.env
         return Identity(
             planner=self.config.planner,
-            parameters=self.settings.model_dump(mode="json"),
+            parameters=self.labelling.model_dump(mode="json"),
             robot=env.robot,
             observation=env.observation,
             height_low=env.height_low,
