@@ -3,8 +3,9 @@
 import re
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, JsonValue, model_validator
+from pydantic import AfterValidator, Field, JsonValue, field_validator, model_validator
 
+from jaxleas.evaluation.recipes import RECIPES
 from jaxleas.surrogates.fit import FitSettings
 from jaxleas.training.config import RunConfig, TerrainConfig
 from jaxleas.types.bounds import Count, NonNegative, Positive, Seed, Whole
@@ -82,6 +83,24 @@ class JudgeConfig(Strict):
     suites: tuple[str, ...] = ("transitions", "hole", "wall")
     starts: Count = 100
     """A cell."""
+
+    @field_validator("suites")
+    @classmethod
+    def _cells_once(cls, suites: tuple[str, ...]) -> tuple[str, ...]:
+        """Refuse a suite that there is not, and suites that share a cell, before hours of work."""
+        found: dict[tuple[str, float, float, float], str] = {}
+        for name in suites:
+            if name not in RECIPES:
+                raise ValueError(f"no suite is called {name!r}; there are {', '.join(RECIPES)}")
+            for row in RECIPES[name].rows:
+                key = row.name, row.yaw, row.yaw_spread, row.speed
+                if key in found:
+                    raise ValueError(
+                        f"{row.name} at {row.yaw:g} deg is in {found[key]} and in {name}, and"
+                        " rounds are compared cell by cell: name one of these suites, once"
+                    )
+                found[key] = name
+        return suites
 
 
 class DistillationConfig(Strict):

@@ -83,5 +83,10 @@ def exact_success(cells: Sequence[CellResult]) -> float:
 
 
 def summary(cells: Sequence[CellResult]) -> Mapping[str, float]:
-    """Return each cell's exact success by its name."""
-    return {f"{cell.name} {cell.yaw:.0f}°": cell.planned or 0.0 for cell in cells}
+    """Return each cell's exact success by its name, heading and, where it walks, speed."""
+
+    def title(cell: CellResult) -> str:
+        pace = f" {cell.speed:g} m/s" if cell.speed else ""
+        return f"{cell.name} {cell.yaw:.0f}°{pace}"
+
+    return {title(cell): cell.planned or 0.0 for cell in cells}
