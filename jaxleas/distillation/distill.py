@@ -8,14 +8,13 @@ import time
 
 from jaxleas.distillation.against_planner import AgainstPlanner
 from jaxleas.distillation.against_surrogate import AgainstSurrogate
-from jaxleas.distillation.judging import exact_success, judge_round, summary
+from jaxleas.distillation.judging import exact_success, judge_round, mean_robustness, summary
 from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.round_result import RoundResult
 from jaxleas.distillation.rounds import (
     Mode,
     Practised,
-    RoundResult,
     Say,
-    best_of,
     keep_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
@@ -39,7 +38,7 @@ def run_rounds(place: Workplace, say: Say) -> list[RoundResult]:
             practised = mode.practise(number, practised, say)
             results.append(_judge(place, number, practised, say))
             keep_rounds(place.folder, results, mode)
-            in_vain = number - best_of(results).round
+            in_vain = number - max(results, key=lambda each: each.success).round
             if in_vain >= place.config.patience:
                 say(f"no rise of the exact success for {in_vain} rounds: done")
                 break
@@ -76,4 +75,13 @@ def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> Rou
     seconds = practised.seconds | {"judgement": round(time.perf_counter() - begun, 1)}
     success, by_cell = exact_success(cells), dict(summary(cells))
     say(f"round {number}: exact success {100 * success:.1f} %")
-    return RoundResult(number, success, by_cell, practised.labels, seconds, practised.surrogate)
+    return RoundResult(
+        round=number,
+        success=success,
+        cells=by_cell,
+        labels=practised.labels,
+        seconds=seconds,
+        surrogate=practised.surrogate,
+        starts=sum(cell.starts for cell in cells),
+        robustness=mean_robustness(cells),
+    )

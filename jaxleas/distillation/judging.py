@@ -82,6 +82,12 @@ def exact_success(cells: Sequence[CellResult]) -> float:
     return sum(cell.planned or 0.0 for cell in cells) / len(cells)
 
 
+def mean_robustness(cells: Sequence[CellResult]) -> float | None:
+    """Return the robustness of the plans, mean over the cells [N]; None where there is none."""
+    known = [cell.robustness for cell in cells if cell.robustness is not None]
+    return sum(known) / len(known) if known else None
+
+
 def summary(cells: Sequence[CellResult]) -> Mapping[str, float]:
     """Return each cell's exact success by its name, heading and, where it walks, speed."""
 

@@ -59,9 +59,7 @@ def first_run(folder: DistillationFolder, config: DistillationConfig) -> RunConf
     return config.run if where is None else load_config(RunConfig, RunFolder.open(where).config)
 
 
-def train_start(
-    folder: DistillationFolder, config: DistillationConfig, devices: Devices
-) -> Path:
+def train_start(folder: DistillationFolder, config: DistillationConfig, devices: Devices) -> Path:
     """Return the run folder of the policy to begin with, trained first where none was given.
 
     Args:

@@ -5,7 +5,7 @@ from typing import Any
 
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
-from jaxleas.distillation.report_data import RunData, best_round, read_run_data
+from jaxleas.distillation.report_data import RunData, read_run_data
 from jaxleas.distillation.report_pictures import draw_calibration, draw_learning, draw_rounds
 from jaxleas.evaluation.figure_pictures import draw_figures
 from jaxleas.evaluation.page import page_template
@@ -20,6 +20,7 @@ from jaxleas.files import write_text
 from jaxleas.training.configuration import load_config
 
 TEMPLATE = "distilled.html"
+_PARTS = ("stretch", "guide")  # of what a surrogate is worth
 LEARNING = {"sampling": "4.7", "mip": "5.5"}
 
 
@@ -43,19 +44,19 @@ def write_distilled_report(run: Path, out: Path | None = None) -> Path:
 def render(data: RunData, config: DistillationConfig) -> str:
     """Return the report's HTML: images inline, nothing fetched, no scripts."""
     figures = draw_figures(data.figures) if data.figures is not None else []
-    best = best_round(data.rounds)
+    best = data.best
     return page_template("jaxleas.distillation", TEMPLATE).render(
         name=data.path.resolve().name,
         planner=PLANNER_TITLES[config.planner],
         mode=config.mode,
         headlines=headlines(data, config),
         starts=config.judge.starts,
-        best=best["round"],
+        best=best.round,
         rounds=round_table(data),
         rounds_picture=inline(draw_rounds(data.rounds)),
         surrogates=surrogate_table(data),
-        confusions=confusion_tables(best["surrogate"]),
-        calibration=inline(draw_calibration(best["surrogate"])) if best["surrogate"] else None,
+        confusions=confusion_tables(best.surrogate),
+        calibration=inline(draw_calibration(best.surrogate)) if best.surrogate else None,
         labels=data.labels,
         percent=percent,
         learning=inline(draw_learning(data.start, data.practice)) if data.practice else None,
@@ -75,16 +76,16 @@ def render(data: RunData, config: DistillationConfig) -> str:
 
 def headlines(data: RunData, config: DistillationConfig) -> list[tuple[str, str]]:
     """Return the few numbers that matter: (number, what it says)."""
-    first, best = data.rounds[0], best_round(data.rounds)
-    cells = len(best["cells"])
+    first, best = data.rounds[0], data.best
+    cells = len(best.cells)
     guides = cells * config.judge.starts
     words = f"of {guides} starts in {cells} cells, judged exactly on held-out scenes"
-    worst = min(best["cells"], key=best["cells"].__getitem__)
-    minutes = sum(sum(row["seconds"].values()) for row in data.rounds) / 60
+    worst = min(best.cells, key=best.cells.__getitem__)
+    minutes = sum(sum(row.seconds.values()) for row in data.rounds) / 60
     numbers = [
-        (percent(best["success"]), f"{words}: round {best['round']}, the best of all"),
-        (percent(first["success"]), "likewise, the policy begun with"),
-        (percent(best["cells"][worst]), f"in its worst cell, {cell_title(worst)}"),
+        (percent(best.success), f"{words}: round {best.round}, the best of all"),
+        (percent(first.success), "likewise, the policy begun with"),
+        (percent(best.cells[worst]), f"in its worst cell, {cell_title(worst)}"),
         (f"{minutes:.0f} min", f"for {len(data.rounds) - 1} rounds"),
     ]
     if labels := sum(each.guides for each in data.labels):
@@ -94,16 +95,24 @@ def headlines(data: RunData, config: DistillationConfig) -> list[tuple[str, str]
 
 def round_table(data: RunData) -> dict[str, Any]:
     """Return the table of all rounds, as text."""
-    names = list(data.rounds[0]["cells"])
+    names = list(data.rounds[0].cells)
     return {
-        "columns": ["round", "labels", "minutes", *map(cell_title, names), "mean"],
+        "columns": [
+            "round",
+            "labels",
+            "minutes",
+            *map(cell_title, names),
+            "mean",
+            "robustness [N]",
+        ],
         "rows": [
             [
-                str(row["round"]),
-                f"{row['labels']:,}",
-                f"{sum(row['seconds'].values()) / 60:.1f}",
-                *(percent(row["cells"].get(name)) for name in names),
-                percent(row["success"]),
+                str(row.round),
+                f"{row.labels:,}",
+                f"{sum(row.seconds.values()) / 60:.1f}",
+                *(percent(row.cells.get(name)) for name in names),
+                percent(row.success),
+                "-" if row.robustness is None else f"{row.robustness:.1f}",
             ]
             for row in data.rounds
         ],
@@ -114,11 +123,11 @@ def surrogate_table(data: RunData) -> list[list[str]]:
     """Return what each round's surrogate is worth, by stretch and guide path, as text."""
     table = []
     for row in data.rounds:
-        for name in ("stretch", "guide") if row["surrogate"] else ():
-            part = row["surrogate"][name]
+        report = row.surrogate or {}
+        for name, part in ((name, report[name]) for name in _PARTS if name in report):
             table.append(
                 [
-                    str(row["round"]),
+                    str(row.round),
                     name,
                     f"{part['count']:,}",
                     f"{part['failed']:,}",
@@ -133,4 +142,4 @@ def surrogate_table(data: RunData) -> list[list[str]]:
 
 def confusion_tables(report: dict[str, Any] | None) -> list[tuple[str, dict[str, Any]]]:
     """Return the confusion tables of a surrogate, by stretch and by guide path."""
-    return [(name, report[name]["confusion"]) for name in ("stretch", "guide")] if report else []
+    return [(name, report[name]["confusion"]) for name in _PARTS] if report else []

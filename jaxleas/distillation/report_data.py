@@ -1,12 +1,12 @@
 """What a distilled run's folder says of itself: read from files alone, for its report."""
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from jaxleas.distillation.folder import DistillationFolder, read_begun_with
+from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds
 from jaxleas.evaluation.figure_file import Figures, read_figures
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation
@@ -64,13 +64,18 @@ class RunData:
     """
 
     path: Path
-    rounds: list[dict[str, Any]]
+    rounds: list[RoundResult]
     labels: list[LabelCount] = field(default_factory=list)
     start: list[dict[str, Any]] = field(default_factory=list)
     practice: list[list[dict[str, Any]]] = field(default_factory=list)
     evaluations: list[Evaluation] = field(default_factory=list)
     figures: Figures | None = None
     missing: list[Missing] = field(default_factory=list)
+
+    @property
+    def best(self) -> RoundResult:
+        """The round whose policy is kept."""
+        return best_of(self.rounds[1:] or self.rounds)
 
 
 def is_distilled(run: Path) -> bool:
@@ -95,9 +100,9 @@ def read_run_data(run: Path, planner: str) -> RunData:
         )
     data = RunData(run, read_rounds(folder.table))
     for row in data.rounds:
-        part = folder.round(row["round"])
+        part = folder.round(row.round)
         if (part.labels / "verdicts").is_dir():
-            data.labels.append(count_labels(row["round"], part.labels / "verdicts"))
+            data.labels.append(count_labels(row.round, part.labels / "verdicts"))
         if (part.run / "metrics.jsonl").is_file():
             data.practice.append(read_metrics(part.run / "metrics.jsonl"))
     where = read_begun_with(folder.begun_with)
@@ -159,8 +164,3 @@ def _kind(reason: str) -> str:
     """Return a reason without its numbers, so that equal ones count together."""
     words = ("#" if any(map(str.isdigit, word)) else word for word in reason.split())
     return " ".join(words)
-
-
-def best_round(rounds: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return the round whose policy is kept: of greatest success, of equals the first."""
-    return max(rounds[1:] or rounds, key=lambda row: (row["success"], -row["round"]))

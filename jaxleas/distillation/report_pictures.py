@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from jaxleas.distillation.round_result import RoundResult
 from jaxleas.evaluation.learning_curves import series
 
 if TYPE_CHECKING:
@@ -22,14 +23,14 @@ CURVES = {
 SMOOTH = 9  # updates over which a noisy curve is averaged
 
 
-def draw_rounds(rounds: Sequence[Mapping[str, Any]]) -> bytes:
+def draw_rounds(rounds: Sequence[RoundResult]) -> bytes:
     """Draw the exact success of every round: the mean, and each cell thin behind it."""
     figure = _figure(6.4, 3.6)
     ax: Axes = figure.subplots()
-    number = [row["round"] for row in rounds]
-    for name in rounds[0]["cells"]:
-        ax.plot(number, [100 * row["cells"][name] for row in rounds], color=GREY, linewidth=0.8)
-    mean = [100 * row["success"] for row in rounds]
+    number = [row.round for row in rounds]
+    for name in rounds[0].cells:
+        ax.plot(number, [100 * row.cells[name] for row in rounds], color=GREY, linewidth=0.8)
+    mean = [100 * row.success for row in rounds]
     ax.plot(number, mean, color=BLUE, marker="o", linewidth=2)
     _dress(ax, "round (0: the policy begun with)", "exact success [%]")
     ax.set_xticks(number)

@@ -2,13 +2,14 @@
 
 import shutil
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 from jaxleas.distillation.folder import DistillationFolder, RoundFolder
-from jaxleas.distillation.rounds_file import VERSION
-from jaxleas.files import atomic_path, write_json
+from jaxleas.distillation.round_result import RoundResult, best_of
+from jaxleas.distillation.rounds_file import write_rounds
+from jaxleas.files import atomic_path
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.training.train_state import Learned
 
@@ -46,36 +47,9 @@ class Mode(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class RoundResult:
-    """One row of the table.
-
-    Attributes:
-        round: its number; 0 is the policy begun with.
-        success: mean exact success over all cells.
-        cells: exact success of each cell.
-        labels: guide paths judged in this round.
-        seconds: spent on labels, fit, practice and judgement.
-        surrogate: what its fit measured; None in round 0.
-    """
-
-    round: int
-    success: float
-    cells: dict[str, float]
-    labels: int
-    seconds: dict[str, float]
-    surrogate: dict[str, Any] | None
-
-
-def best_of(results: Sequence[RoundResult]) -> RoundResult:
-    """Return the round of most success, the first of several."""
-    return max(results, key=lambda result: (result.success, -result.round))
-
-
 def keep_rounds(folder: DistillationFolder, results: Sequence[RoundResult], mode: Mode) -> None:
     """Write the table, and put what the best round of practice made at hand."""
-    rounds = [asdict(each) for each in results]
-    write_json(folder.table, {"version": VERSION, "rounds": rounds})
+    write_rounds(folder.table, results)
     for file in mode.products(folder.round(best_of(results[1:]).round)):
         with atomic_path(folder.path / file.name) as temporary:
             shutil.copyfile(file, temporary)

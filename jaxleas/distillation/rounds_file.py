@@ -1,11 +1,14 @@
-"""`rounds.json`, the table of a distillation's rounds, checked before a report is made of it."""
+"""`rounds.json`, the table of a distillation's rounds, written, and checked when it is read."""
 
+from collections.abc import Sequence
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from jaxleas.files import read_json, require_version, typed
+from jaxleas.distillation.round_result import RoundResult
+from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.types.bounds import Count, Fraction, NonNegative, Whole
 from jaxleas.types.errors import InputError
 
@@ -48,6 +51,8 @@ class _Row(BaseModel):
     labels: Whole
     seconds: dict[str, NonNegative]
     surrogate: _Report | None
+    starts: Whole = 0
+    robustness: float | None = None
 
 
 class _Rounds(BaseModel):
@@ -60,8 +65,13 @@ class _Rounds(BaseModel):
         return self
 
 
-def read_rounds(path: Path) -> list[dict[str, Any]]:
-    """Return the rows of a table of rounds, round 0 first, as they stand in the file.
+def write_rounds(path: Path, results: Sequence[RoundResult]) -> None:
+    """Write the table of all rounds."""
+    write_json(path, {"version": VERSION, "rounds": [asdict(each) for each in results]})
+
+
+def read_rounds(path: Path) -> list[RoundResult]:
+    """Return the rows of a table of rounds, round 0 first.
 
     Raises:
         InputError: the file is none.
@@ -71,4 +81,8 @@ def read_rounds(path: Path) -> list[dict[str, Any]]:
         raise InputError(f"{path} holds no `rounds`")
     require_version(content, VERSION, path)
     typed(_Rounds, content, f"{path} holds no rounds of a distillation")
-    return content["rounds"]
+    names = [each.name for each in fields(RoundResult)]
+    return [
+        RoundResult(**{name: row[name] for name in names if name in row})
+        for row in content["rounds"]
+    ]

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from jaxleas.distillation.rounds import RoundResult
+from jaxleas.distillation.round_result import RoundResult
 
 
 def table_of(results: Sequence[RoundResult]) -> str:
-    """Return the exact success of each round, cell by cell, in per cent."""
+    """Return the exact success of each round, cell by cell [%], and its plans' robustness."""
     names = list(results[0].cells)
-    heads = ["round", "labels", "minutes", *names, "mean"]
+    heads = ["round", "labels", "minutes", *names, "mean", "robustness [N]"]
     rows = [
         [
             str(each.round),
@@ -16,6 +16,7 @@ def table_of(results: Sequence[RoundResult]) -> str:
             f"{sum(each.seconds.values()) / 60:.1f}",
             *(f"{100 * each.cells[name]:.1f}" for name in names),
             f"{100 * each.success:.1f}",
+            "-" if each.robustness is None else f"{each.robustness:.1f}",
         ]
         for each in results
     ]
