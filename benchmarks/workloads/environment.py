@@ -28,7 +28,7 @@ ARENAS, ARENA_ROBOTS = (16, 256), 4096
 
 def _measure(layout: str, robots: int, context: Context) -> dict[str, Figure]:
     env = SteeringEnv(context.config.env.model_copy(update={"observation": layout}))
-    runs = _rates(env, context.world, robots, context)
+    runs = rates(env, context.world, robots, context)
     rival = context.rival.figure("env") if layout == context.env.layout.name else None
     return {_name(layout, robots): Figure(runs, context.env_limit(env, robots), rival)}
 
@@ -36,16 +36,16 @@ def _measure(layout: str, robots: int, context: Context) -> dict[str, Figure]:
 def _of_arenas(arenas: int, context: Context) -> dict[str, Figure]:
     world = training_world(changed(context.config, terrain={"arenas": arenas}))
     # The roofs were measured over the shipped terrain: no limit.
-    return {f"env_arenas_{arenas}": Figure(_rates(context.env, world, ARENA_ROBOTS, context))}
+    return {f"env_arenas_{arenas}": Figure(rates(context.env, world, ARENA_ROBOTS, context))}
 
 
 def _without_restarts(context: Context) -> dict[str, Figure]:
     """Measure the step by itself: robots that have failed walk on."""
-    runs = _rates(context.env, context.world, ARENA_ROBOTS, context, restarts=False)
+    runs = rates(context.env, context.world, ARENA_ROBOTS, context, restarts=False)
     return {WITHOUT_RESTARTS: Figure(runs, context.env_limit(context.env, ARENA_ROBOTS))}
 
 
-def _rates(
+def rates(
     env: SteeringEnv, world: World, robots: int, context: Context, restarts: bool = True
 ) -> list[float]:
     """Return steps a second, one value a run."""

@@ -9,7 +9,7 @@ from jaxleas.conditions.exact import (
     reconfirm,
 )
 from jaxleas.conditions.footprint import footprint_points, is_under_root
-from jaxleas.conditions.foresight import Foresight
+from jaxleas.conditions.foresight import Foresight, LookAround, Pick, everyone
 from jaxleas.conditions.reachability import reachability, strict_reachability
 
 __all__ = [
@@ -17,8 +17,11 @@ __all__ = [
     "VOID_IN_ROOT",
     "Condition",
     "Foresight",
+    "LookAround",
+    "Pick",
     "all_of",
     "collision",
+    "everyone",
     "exact_collision",
     "exact_reachability",
     "exact_strict_reachability",

@@ -1,11 +1,24 @@
 """A condition with memory: what is judged is the walk so far, not one configuration."""
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
+import numpy as np
 from jax import Array
 from jaxtyping import Float
 
 from jaxleas.types import RootMotion
+
+Pick = Callable[[Array], Array]
+"""Takes some robots out of an array with one entry a robot."""
+LookAround = Callable[[Pick, np.ndarray], Array]
+"""Returns the local terrain of the robots picked [m], at those of a `Condition`'s points that have
+these indices."""
+
+
+def everyone(leaf: Array) -> Array:
+    """Pick all robots."""
+    return leaf
 
 
 class Foresight(Protocol):
@@ -37,7 +50,13 @@ class Foresight(Protocol):
         ...
 
     def follow(
-        self, memory: Any, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
+        self, memory: Any, look_around: LookAround, motion: RootMotion
     ) -> tuple[Float[Array, "*batch"], Any]:
-        """Judge the next configuration of the walk; return margin and memory, as `begin` does."""
+        """Judge the next configuration of the walk; return margin and memory, as `begin` does.
+
+        Args:
+            memory: of the walk.
+            look_around: shows local terrain; looking is dear, and who need not look does not.
+            motion: of the root.
+        """
         ...

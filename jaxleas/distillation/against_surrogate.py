@@ -43,7 +43,7 @@ class AgainstSurrogate:
         if not folder.practised.is_file():
             say(f"round {number}: practice")
             config = practice_config(place.config, place.run_config)
-            foresight = SurrogateForesight(surrogate, place.config.practice.threshold)
+            foresight = SurrogateForesight(surrogate, place.config.practice.threshold, queue=True)
             practise(folder, config, foresight, before.learned, place.devices)
         seconds["practice"] = read_done(folder.practised, "seconds")["seconds"]
         learned = read_run(folder.run)[1]

@@ -125,7 +125,9 @@ class _Course:
         """Return whom the foresight refuses now, and its memory; `begin` has shown it the first."""
         if self.env.foresight is None:
             return jnp.zeros_like(walk.refused), walk.memory
-        foreseen, after = self.env.foresight.follow(walk.memory, heights, walk.motion)
+        foreseen, after = self.env.foresight.follow(
+            walk.memory, lambda pick, points: pick(heights)[..., points], walk.motion
+        )
         later = walk.step > 0
         memory = jax.tree.map(lambda new, old: jnp.where(later, new, old), after, walk.memory)
         return later & ~(foreseen >= 0.0), memory

@@ -13,6 +13,18 @@ MOTION_FEATURES = 7  # displacement, turn, velocity
 _SPEED = 0.1  # [m/s]
 _TIME_STEP = 0.2  # [s]
 _TURN = 0.07  # in one time step at the greatest turn rate [rad]
+# How far contacts of the next stretch may lie from the root: what is beyond teaches nothing.
+_AHEAD, _BESIDE = 0.65, 0.45  # [m]
+
+
+def near_points(points_in_root: Float[np.ndarray, "P 2"]) -> Int[np.ndarray, " points"]:
+    """Return the indices of the points of the local terrain that a surrogate is shown.
+
+    Args:
+        points_in_root: of the local terrain [m].
+    """
+    ahead, beside = points_in_root.T
+    return np.flatnonzero((ahead < _AHEAD) & (np.abs(beside) < _BESIDE))
 
 
 def walk_features(
@@ -25,7 +37,7 @@ def walk_features(
     """Return the features of one kept configuration.
 
     Args:
-        heights_in_root: local terrain relative to the root [m].
+        heights_in_root: local terrain relative to the root, near it [m].
         motion: of the root now.
         last: motion at the kept configuration before; at the first, the same.
         keep_every: time steps from one kept configuration to the next.

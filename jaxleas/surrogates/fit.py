@@ -30,9 +30,9 @@ _CHUNK = 512  # walks whose hazards are computed at once
 class FitSettings(Strict):
     """How a surrogate is fitted."""
 
-    code: Annotated[int, Field(ge=1)] = 48
+    code: Annotated[int, Field(ge=1)] = 24
     """Outputs of the encoder."""
-    hidden: Annotated[int, Field(ge=1)] = 32
+    hidden: Annotated[int, Field(ge=1)] = 16
     """Values that are carried from one kept configuration to the next."""
     epochs: Annotated[int, Field(ge=1)] = 12
     """Passes over the walks."""
@@ -115,7 +115,7 @@ def fit(
     split = split_by_terrain(walks, settings.held_out, settings.seed)
     hazards = _Hazards(env, identity)
     key, order_key = jax.random.split(jax.random.key(settings.seed))
-    size = len(env.points_in_root) + MOTION_FEATURES
+    size = len(identity.near) + MOTION_FEATURES
     weights = initial_weights(key, size, settings.code, settings.hidden)
     steps = settings.epochs * -(-len(split.learned) // settings.minibatch)
     rate = optax.cosine_decay_schedule(settings.learning_rate, steps)
@@ -167,9 +167,9 @@ class _Hazards:
     """The network along walks: logits of the hazard at every kept configuration."""
 
     def __init__(self, env: SteeringEnv, identity: Identity):
-        self.env = env
         self.identity = identity
-        self.mirror = mirrored(env.points_in_root)
+        self.points = env.points_in_root[identity.near]
+        self.mirror = mirrored(self.points)
         self._jitted = jax.jit(self._logits)
 
     def logits(self, weights: Weights, atlas: Atlas, walks: LabelledWalks) -> np.ndarray:
@@ -196,7 +196,7 @@ class _Hazards:
         map_index = jnp.broadcast_to(walks["map_index"][:, None], motion.yaw.shape)
         last = jax.tree.map(lambda leaf: jnp.concatenate([leaf[:, :1], leaf[:, :-1]], 1), motion)
         features = walk_features(
-            self.env.local_heights(atlas, map_index, motion),
+            atlas.heights_around(map_index, motion.position, motion.yaw, self.points),
             motion,
             last,
             self.identity.keep_every,

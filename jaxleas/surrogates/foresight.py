@@ -12,8 +12,10 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int
 
+from jaxleas.conditions import LookAround
 from jaxleas.surrogates.features import walk_features
 from jaxleas.surrogates.surrogate import Surrogate
+from jaxleas.surrogates.turns import all_at_once, in_turn
 from jaxleas.types import InputError, RootMotion
 
 
@@ -42,7 +44,7 @@ class SurrogateForesight:
     Margins are differences of probability: that of having come so far, less the walk's level.
     """
 
-    def __init__(self, surrogate: Surrogate, threshold: float = 0.0):
+    def __init__(self, surrogate: Surrogate, threshold: float = 0.0, queue: bool = False):
         """Prepare the judge.
 
         Args:
@@ -50,6 +52,10 @@ class SurrogateForesight:
             threshold: the risk dial: levels are drawn in [threshold, 1]. 0 fails as often as the
                 planner would; with 0.9 a walk that has come so far with less than 90 % never goes
                 on, and policies learn to be careful beyond what the planner asks.
+            queue: for training with many robots: at each step only as many are judged as are due on
+                average, and some more; the others wait for the next step. Where all are due at
+                once, as at the beginning of a training, some wait for a few steps, after which
+                their times to be judged are apart.
 
         Raises:
             InputError: the threshold is outside [0, 1).
@@ -58,6 +64,7 @@ class SurrogateForesight:
             raise InputError(f"the threshold is {threshold}; give a probability in [0, 1)")
         self.surrogate = surrogate
         self.threshold = threshold
+        self.queue = queue
 
     def begin(
         self,
@@ -67,44 +74,48 @@ class SurrogateForesight:
     ) -> tuple[Float[Array, "*batch"], Memory]:
         """Judge the first configuration: can the robot stand here at all?"""
         batch = motion.yaw.shape
+        hidden = self.surrogate.begin(batch)
+        near = self.surrogate.identity.near
+        hidden, hazard = self._judge(hidden, heights_in_root[..., near], motion, motion)
         memory = Memory(
-            hidden=self.surrogate.begin(batch),
+            hidden=hidden,
             last=motion,
             since=jnp.zeros(batch, jnp.int32),
-            survival=jnp.ones(batch),
+            survival=1.0 - hazard,
             level=self.threshold + (1.0 - self.threshold) * chance,
         )
-        memory = self._keep(memory, heights_in_root, motion)
         return memory.survival - memory.level, memory
 
     def follow(
-        self, memory: Memory, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
+        self, memory: Memory, look_around: LookAround, motion: RootMotion
     ) -> tuple[Float[Array, "*batch"], Memory]:
         """Judge the next configuration; the planner is asked about one in `keep_every`."""
+        near, keep_every = self.surrogate.identity.near, self.surrogate.identity.keep_every
         since = memory.since + 1
-        kept = since >= self.surrogate.identity.keep_every
-        after = self._keep(memory, heights_in_root, motion)
+        due = since >= keep_every
+        turn = in_turn(due, keep_every) if self.queue else all_at_once(due)
+        hidden, last, now = jax.tree.map(turn.pick, (memory.hidden, memory.last, motion))
+        hidden, hazard = self._judge(hidden, look_around(turn.pick, near), now, last)
 
-        def pick(new: Array, old: Array) -> Array:
-            return jnp.where(kept.reshape(kept.shape + (1,) * (old.ndim - kept.ndim)), new, old)
+        def where_served(new: Array, old: Array) -> Array:
+            served = turn.served.reshape(due.shape + (1,) * (old.ndim - due.ndim))
+            return jnp.where(served, new, old)
 
-        memory = jax.tree.map(pick, after, memory.replace(since=since))  # type: ignore[attr-defined]
-        return memory.survival - memory.level, memory
-
-    def _keep(self, memory: Memory, heights: Array, motion: RootMotion) -> Memory:
-        identity = self.surrogate.identity
-        features = walk_features(
-            heights,
-            motion,
-            memory.last,
-            identity.keep_every,
-            (identity.height_low, identity.height_high),
-        )
-        hidden, hazard = self.surrogate.hazard(memory.hidden, features)
-        return Memory(
-            hidden=hidden,
-            last=motion,
-            since=jnp.zeros_like(memory.since),
-            survival=memory.survival * (1.0 - hazard),
+        survival = memory.survival * (1.0 - turn.give_back(hazard))
+        memory = Memory(
+            hidden=where_served(turn.give_back(hidden), memory.hidden),
+            last=jax.tree.map(where_served, motion, memory.last),
+            since=jnp.where(turn.served, 0, since),
+            survival=where_served(survival, memory.survival),
             level=memory.level,
         )
+        return memory.survival - memory.level, memory
+
+    def _judge(
+        self, hidden: Array, heights: Array, motion: RootMotion, last: RootMotion
+    ) -> tuple[Array, Array]:
+        """Return hidden state and hazard after a kept configuration."""
+        identity = self.surrogate.identity
+        height_range = identity.height_low, identity.height_high
+        features = walk_features(heights, motion, last, identity.keep_every, height_range)
+        return self.surrogate.hazard(hidden, features)

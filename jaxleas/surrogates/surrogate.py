@@ -1,14 +1,19 @@
 """A fitted surrogate: a contact planner's learned stand-in, and exactly which planner's."""
 
+from functools import cache
 from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from pydantic import JsonValue
 
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.surrogates.features import near_points
 from jaxleas.surrogates.network import Weights, recur
 from jaxleas.types.strict import Strict
 
@@ -32,6 +37,22 @@ class Identity(Strict):
     def keep_every(self) -> int:
         """Time steps from one configuration that the planner is asked about to the next."""
         return int(self.parameters["keep_every"])  # type: ignore[arg-type]
+
+    @property
+    def points(self) -> Float[np.ndarray, "points 2"]:
+        """Points of the local terrain that the surrogate is shown, in the root frame [m]."""
+        return _points_in_root(self.robot, self.observation)[self.near]
+
+    @property
+    def near(self) -> Int[np.ndarray, " points"]:
+        """Indices of these among all points of the local terrain."""
+        return near_points(_points_in_root(self.robot, self.observation))
+
+
+@cache
+def _points_in_root(robot: str, observation: str) -> Float[np.ndarray, "P 2"]:
+    config = SteeringConfig.model_validate({"robot": robot, "observation": observation})
+    return SteeringEnv(config).points_in_root
 
 
 @struct.dataclass

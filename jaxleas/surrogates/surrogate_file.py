@@ -10,14 +10,13 @@ import numpy as np
 from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import parse_json, read_npz, write_npz
 from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.surrogates.network import Weights
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.types import InputError
 
-FORMAT = 1
+FORMAT = 2
 MAX_BYTES = 2**28  # a surrogate of a quarter of a gigabyte is a mistake
 _WEIGHTS = tuple(field.name for field in fields(Weights))  # type: ignore[arg-type]
 
@@ -124,10 +123,7 @@ def require_fit(
 
 def _check(path: str | Path, arrays: dict[str, np.ndarray], identity: Identity) -> None:
     """Refuse arrays that are no network for this identity."""
-    config = SteeringConfig.model_validate(
-        {"robot": identity.robot, "observation": identity.observation}
-    )
-    size = len(SteeringEnv(config).points_in_root) + MOTION_FEATURES
+    size = len(identity.near) + MOTION_FEATURES
     code, hidden = arrays["encoder_bias"].size, arrays["head"].size
     expected = {
         "scale": (),

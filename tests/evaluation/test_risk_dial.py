@@ -14,6 +14,7 @@ from jaxleas.evaluation.risk_dial import Guides, as_json, draw_dial, foresee, jo
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.guide.leas import leas
 from jaxleas.surrogates import SurrogateForesight, write_surrogate
+from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.types import InputError
 
 from ..guide.walkers import homing_policy
@@ -109,8 +110,10 @@ def test_a_higher_threshold_buys_success_with_starts_refused():
 )
 def test_what_cannot_be_is_refused_with_one_sentence(run, tmp_path, doubtful, given, sentence):
     write_surrogate(tmp_path / "S.npz", doubtful)
-    weights = doubtful.weights.replace(encoder=jnp.zeros((11 * 7 + 28 + 7, 8)))
-    other = doubtful.replace(weights=weights, identity=identity(observation="icra81"))
+    else_where = identity(observation="icra81")
+    encoder = jnp.zeros((len(else_where.near) + MOTION_FEATURES, 8))
+    weights = doubtful.weights.replace(encoder=encoder)
+    other = doubtful.replace(weights=weights, identity=else_where)
     write_surrogate(tmp_path / "O.npz", other)
     words = [str(tmp_path / f"{each}.npz") if each in "SO" else each for each in given]
     with pytest.raises(InputError, match=sentence):

@@ -25,12 +25,12 @@ from jaxleas.surrogates.network import initial_weights
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.types import InputError
 
-from .walkers import KEEP_EVERY, env, identity, wander
+from .walkers import KEEP_EVERY, identity, wander
 
 
 @pytest.fixture
 def surrogate():
-    size = len(env().points_in_root) + MOTION_FEATURES
+    size = len(identity().near) + MOTION_FEATURES
     weights = initial_weights(jax.random.key(0), size, 8, 6)
     return Surrogate(weights, jnp.float32(1.5), jnp.float32(-0.5), identity(), {"guides": 3})
 
@@ -56,7 +56,7 @@ def break_metadata(change):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (break_metadata(lambda m: m.update(format=9)), "format 9; this version reads 1"),
+        (break_metadata(lambda m: m.update(format=9)), "format 9; this version reads 2"),
         (break_metadata(lambda m: m.pop("identity")), "is not a surrogate's"),
         (break_metadata(lambda m: m["identity"].update(colour=1)), "identity.colour"),
         (break_metadata(lambda m: m["identity"]["parameters"].clear()), "keep_every"),

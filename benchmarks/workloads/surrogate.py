@@ -1,0 +1,55 @@
+"""How much longer an environment step takes where a surrogate ends episodes, too."""
+
+import jax
+
+from benchmarks.context import Context
+from benchmarks.measurements import Figure, Metric
+from benchmarks.workloads.environment import ARENA_ROBOTS, rates
+from benchmarks.workloads.workload import Workload
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.labels.settings import settings_from
+from jaxleas.surrogates import FitSettings, Identity, Surrogate, SurrogateForesight
+from jaxleas.surrogates.features import MOTION_FEATURES
+from jaxleas.surrogates.network import initial_weights
+
+PLANNER = "sampling"
+
+
+def untrained_surrogate(env: SteeringEnv) -> Surrogate:
+    """Return a surrogate of the size that is fitted by default: it costs what a fitted one does."""
+    config: SteeringConfig = env.config
+    fit = FitSettings()
+    identity = Identity(
+        planner=PLANNER,
+        parameters=settings_from(PLANNER).model_dump(mode="json"),
+        robot=config.robot,
+        observation=config.observation,
+        height_low=config.height_low,
+        height_high=config.height_high,
+    )
+    one = jax.numpy.float32(1.0)
+    size = len(identity.near) + MOTION_FEATURES
+    weights = initial_weights(jax.random.key(0), size, fit.code, fit.hidden)
+    return Surrogate(weights=weights, scale=one, shift=0.0 * one, identity=identity)
+
+
+def _measure(context: Context) -> dict[str, Figure]:
+    foresight = SurrogateForesight(untrained_surrogate(context.env), queue=True)
+    watched = SteeringEnv(context.config.env, foresight=foresight)
+    alone, with_it = (
+        rates(env, context.world, ARENA_ROBOTS, context) for env in (context.env, watched)
+    )
+    longer = [100.0 * (before / after - 1.0) for before, after in zip(alone, with_it, strict=True)]
+    return {WITH_SURROGATE: Figure(with_it), LONGER: Figure(longer)}
+
+
+WITH_SURROGATE = f"env_with_surrogate_{ARENA_ROBOTS}"
+LONGER = "env_surrogate_share"
+SURROGATE = Workload(
+    (
+        Metric(WITH_SURROGATE, "steps/s"),
+        Metric(LONGER, "% longer", better="lower", tolerance=0.3),
+    ),
+    _measure,
+)

@@ -1,0 +1,78 @@
+"""Whose turn it is to be judged: of many robots few are due at a step, and only those cost.
+
+Robots stand in groups, and each group serves its own: nothing passes between devices that share the
+robots, and no group is so large that finding who is due costs more than judging them.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jax import Array
+from jaxtyping import Bool
+
+from jaxleas.conditions import Pick, everyone
+
+GROUP = 128
+SPARE = 2.0  # standard deviations of the number due that there is room for beside its mean
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Who is judged at a step.
+
+    Attributes:
+        pick: takes them out of an array with one entry a robot.
+        give_back: makes of an array with one entry for each picked one with one for each robot;
+            where a robot is not served it means nothing.
+        served: who is judged.
+    """
+
+    pick: Pick
+    give_back: Callable[[Array], Array]
+    served: Bool[Array, "*batch"]
+
+
+def all_at_once(due: Bool[Array, "*batch"]) -> Turn:
+    """Return the turn in which everybody is looked at, and who is due is served."""
+    return Turn(everyone, everyone, due)
+
+
+def in_turn(due: Bool[Array, "*batch"], every: int) -> Turn:
+    """Return the turn that has room for as many as are due on average, and some more.
+
+    Args:
+        due: who waits for it.
+        every: steps from one turn of a robot to its next.
+    """
+    count = due.shape[0] if due.ndim == 1 else 0
+    room = math.ceil(GROUP / every + SPARE * math.sqrt(GROUP / every * (1.0 - 1.0 / every)))
+    if count == 0 or count % GROUP or room >= GROUP:
+        return all_at_once(due)
+
+    def grouped(leaf: Array) -> Array:
+        return leaf.reshape(count // GROUP, GROUP, *leaf.shape[1:])
+
+    def across(index: Array, leaf: Array) -> Array:
+        return index.reshape(index.shape + (1,) * (leaf.ndim - 2))
+
+    place = jnp.cumsum(grouped(due).astype(jnp.int32), axis=1)  # 1 for the first who is due
+    # The robot in each place: as many stand before it as have not come so far.
+    wanted = jnp.arange(1, room + 1)[None, :, None]
+    robot = jnp.sum((place[:, None] < wanted).astype(jnp.int32), axis=2)
+    robot = jnp.minimum(robot, GROUP - 1)  # in a place that nobody has: somebody, in vain
+    seat = jnp.clip(place - 1, 0, room - 1)
+
+    def pick(leaf: Array) -> Array:
+        leaf = grouped(leaf)
+        chosen = jnp.take_along_axis(leaf, across(robot, leaf), axis=1, mode="promise_in_bounds")
+        return chosen.reshape(-1, *leaf.shape[2:])
+
+    def give_back(leaf: Array) -> Array:
+        leaf = leaf.reshape(count // GROUP, room, *leaf.shape[1:])
+        given = jnp.take_along_axis(leaf, across(seat, leaf), axis=1, mode="promise_in_bounds")
+        return given.reshape(count, *leaf.shape[2:])
+
+    served = due & (place.reshape(count) <= room)
+    return Turn(pick, give_back, served)
