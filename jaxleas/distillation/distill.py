@@ -8,6 +8,7 @@ import time
 
 from jaxleas.distillation.against_planner import AgainstPlanner
 from jaxleas.distillation.against_surrogate import AgainstSurrogate
+from jaxleas.distillation.folder import read_done
 from jaxleas.distillation.judging import exact_success, judge_round, mean_robustness, summary
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.round_result import RoundResult
@@ -16,6 +17,7 @@ from jaxleas.distillation.rounds import (
     Practised,
     Say,
     keep_rounds,
+    known_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
 from jaxleas.training.policy import read_policy
@@ -31,12 +33,13 @@ def run_rounds(place: Workplace, say: Say) -> list[RoundResult]:
         say: told, in words, what is done now.
     """
     mode: Mode = _MODES[place.config.mode](place)
+    known = known_rounds(place.folder)
     try:
         practised = _begin(place, say)
-        results = [_judge(place, 0, practised, say)]
+        results = [known.get(0) or _judge(place, 0, practised, say)]
         for number in range(1, place.config.rounds + 1):
             practised = mode.practise(number, practised, say)
-            results.append(_judge(place, number, practised, say))
+            results.append(known.get(number) or _judge(place, number, practised, say))
             keep_rounds(place.folder, results, mode)
             in_vain = number - max(results, key=lambda each: each.success).round
             if in_vain >= place.config.patience:
@@ -57,7 +60,8 @@ def _begin(place: Workplace, say: Say) -> Practised:
         say("round 0: practice without surrogate")
         config = practice_config(place.config, place.run_config, steps)
         practise(folder, config, None, place.learned, place.devices)
-    return Practised(read_policy(folder.policy), read_run(folder.run)[1])
+    seconds = {"practice": read_done(folder.practised, "seconds")["seconds"]}
+    return Practised(read_policy(folder.policy), read_run(folder.run)[1], seconds=seconds)
 
 
 def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> RoundResult:

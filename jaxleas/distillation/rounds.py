@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.round_result import RoundResult, best_of
-from jaxleas.distillation.rounds_file import write_rounds
+from jaxleas.distillation.rounds_file import read_rounds, write_rounds
 from jaxleas.files import atomic_path
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.training.train_state import Learned
@@ -45,6 +45,14 @@ class Mode(Protocol):
     def products(self, folder: RoundFolder) -> list[Path]:
         """Return the files of a round that are its result."""
         ...
+
+
+def known_rounds(folder: DistillationFolder) -> dict[int, RoundResult]:
+    """Return the rounds that an earlier sitting judged, with the time they took, by number."""
+    if not folder.table.is_file():
+        return {}
+    rows = {each.round: each for each in read_rounds(folder.table)}
+    return {number: row for number, row in rows.items() if folder.round(number).judged.is_file()}
 
 
 def keep_rounds(folder: DistillationFolder, results: Sequence[RoundResult], mode: Mode) -> None:

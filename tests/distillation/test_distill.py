@@ -151,6 +151,11 @@ def test_it_goes_through_all_stages_and_goes_on_where_it_was_stopped(start, tmp_
     after = read_policy(folder.policy)
     assert not np.array_equal(before.kernels[0], after.kernels[0])
 
+    # All is done: nothing is done again, and the time that it took is not forgotten.
+    kept = folder.table.read_bytes()
+    cli.run(command)
+    assert folder.table.read_bytes() == kept
+
     # As if killed after the labels of round 1, with one verdict file still missing.
     first = folder.round(1)
     kept = first.surrogate.read_bytes()
