@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-_CONFIDENCE = 1.96  # standard deviations: 95 %
-
 
 @dataclass(frozen=True)
 class RoundResult:
@@ -34,20 +32,13 @@ class RoundResult:
 
 
 def best_of(results: Sequence[RoundResult]) -> RoundResult:
-    """Return the round of most success; where chance may have put it first, the most robust.
+    """Return the round of most success; where it is not alone, the most robust of its like.
 
-    Two rounds are alike where a test of two proportions does not tell them apart at 95 %: another
-    draw of starts might have put the other one first.
+    Rounds whose success is less than a standard error below the greatest are its like: another draw
+    of starts might have put them first.
     """
-    first = max(results, key=lambda each: (each.success, -each.round))
-    alike = [each for each in results if each is first or _are_alike(first, each)]
+    most = max(result.success for result in results)
+    starts = min(result.starts for result in results)
+    error = math.sqrt(most * (1.0 - most) / starts) if starts else 0.0
+    alike = [result for result in results if result.success >= most - error]
     return max(alike, key=lambda each: (each.robustness or 0.0, each.success, -each.round))
-
-
-def _are_alike(first: RoundResult, other: RoundResult) -> bool:
-    if not first.starts or not other.starts:
-        return False
-    successes = first.success * first.starts + other.success * other.starts
-    share = successes / (first.starts + other.starts)
-    variance = share * (1.0 - share) * (1.0 / first.starts + 1.0 / other.starts)
-    return first.success - other.success <= _CONFIDENCE * math.sqrt(variance)

@@ -15,11 +15,10 @@ def result(number, success, robustness=None, starts=1000):
 @pytest.mark.parametrize(
     ("rounds", "best"),
     [
-        # Two shares of about 99 %, of 1000 starts each, differ by chance by up to a point.
-        ([result(1, 0.99, 20.0), result(2, 0.982, 25.0)], 2),
-        ([result(1, 0.99, 20.0), result(2, 0.978, 25.0)], 1),
-        ([result(1, 1.0, 20.0), result(2, 0.997, 25.0), result(3, 1.0, 22.0)], 2),
-        ([result(1, 1.0, 20.0), result(2, 0.995, 25.0), result(3, 1.0, 22.0)], 3),
+        # 99 % of 1000 starts are uncertain by 0.31 points.
+        ([result(1, 0.99, 20.0), result(2, 0.988, 25.0)], 2),
+        ([result(1, 0.99, 20.0), result(2, 0.986, 25.0)], 1),
+        ([result(1, 1.0, 20.0), result(2, 0.999, 25.0), result(3, 1.0, 22.0)], 3),
         ([result(1, 0.99), result(2, 0.99), result(3, 0.988)], 1),
         ([result(1, 0.988), result(2, 0.99)], 2),
         # In tables of old it is not said how many starts there were.
