@@ -13,7 +13,6 @@ from jaxleas.envs.steering.layout import layout_named
 
 
 def learned_kinds(folder: Path) -> list[Kind]:
-    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.export.onnx_file import build_onnx
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.onnx_metadata import describe
@@ -39,7 +38,15 @@ def learned_kinds(folder: Path) -> list[Kind]:
     )
     write_policy(folder / "policy.npz", policy)
     (folder / "policy.onnx").write_bytes(build_onnx(policy, describe(config)))
-    inputs, code, hidden = len(SteeringEnv(config).points_in_root) + MOTION_FEATURES, 5, 4
+    identity = Identity(
+        planner="sampling",
+        parameters={"keep_every": 5, "samples": 100},
+        robot=config.robot,
+        observation=config.observation,
+        height_low=config.height_low,
+        height_high=config.height_high,
+    )
+    inputs, code, hidden = len(identity.near) + MOTION_FEATURES, 5, 4
     weights = Weights(
         encoder=some(inputs, code),
         encoder_bias=some(code),
@@ -49,14 +56,6 @@ def learned_kinds(folder: Path) -> list[Kind]:
         candidate_bias=some(hidden),
         head=some(hidden),
         head_bias=some(),
-    )
-    identity = Identity(
-        planner="sampling",
-        parameters={"keep_every": 5, "samples": 100},
-        robot=config.robot,
-        observation=config.observation,
-        height_low=config.height_low,
-        height_high=config.height_high,
     )
     write_surrogate(
         folder / "surrogate.npz",

@@ -12,6 +12,7 @@ def distill(
     start: Path | None = None,
     planner: str | None = None,
     processes: int | None = None,
+    devices: int | None = None,
 ) -> None:
     """Refine a policy and a surrogate in turn, judged by the exact contact planner.
 
@@ -21,6 +22,7 @@ def distill(
         start: run folder of the policy to begin with; by default one is trained first.
         planner: of your own, MODULE:CLASS, said again: a file alone cannot make code run.
         processes: that ask the planner; all cores by default.
+        devices: that share the practice; all by default, and of a processor every core is one.
     """
     import os
 
@@ -39,18 +41,20 @@ def distill(
 
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
+    if devices is not None and devices < 1:
+        raise InputError(f"--devices is {devices}; give 1 or more")
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
     asked = load_config(DistillationConfig, config)
     require_said(config, asked.planner, planner)
+    ppo = first_run(asked, start).ppo
+    if asked.mode == "surrogate":
+        share_cores(ppo)
+    sharing = choose_devices(devices or "all", ppo)
     settled = open_folder(folder, asked, start)
     with FolderLock(folder.path, "the distillation", "give another --out"):
-        ppo = first_run(folder, settled).ppo
-        if settled.mode == "surrogate":
-            share_cores(ppo)
-        devices = choose_devices("all", ppo)
-        run = train_start(folder, settled, devices)
-        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1, devices)
+        run = train_start(folder, settled, sharing)
+        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1, sharing)
         results = run_rounds(place, _Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""

@@ -49,14 +49,13 @@ def open_folder(
     return config
 
 
-def first_run(folder: DistillationFolder, config: DistillationConfig) -> RunConfig:
+def first_run(config: DistillationConfig, start: Path | None) -> RunConfig:
     """Return the configuration of the run that is begun with, or is yet to be trained.
 
     Raises:
-        InputError: this is no distillation's folder, or what it names is no run folder.
+        InputError: `start` is no run folder.
     """
-    where = read_begun_with(folder.begun_with)
-    return config.run if where is None else load_config(RunConfig, RunFolder.open(where).config)
+    return config.run if start is None else load_config(RunConfig, RunFolder.open(start).config)
 
 
 def train_start(folder: DistillationFolder, config: DistillationConfig, devices: Devices) -> Path:

@@ -208,6 +208,19 @@ def test_what_cannot_be_is_refused_and_nothing_is_left(tmp_path, yaml, sentence)
     assert not (tmp_path / "out").exists()
 
 
+def test_devices_that_there_are_not_are_refused(start, tmp_path):
+    (tmp_path / "c.yaml").write_text("planner: sampling\n")
+    command = ["distill", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "o")]
+    command += ["--start", str(start), "--devices"]
+    for count, sentence in (
+        ("0", "--devices is 0; give 1 or more"),
+        ("99", "--devices 99: JAX finds"),
+    ):
+        with pytest.raises(InputError, match=sentence):
+            cli.run([*command, count])
+    assert not (tmp_path / "o").exists()
+
+
 def test_a_folder_of_something_else_is_refused(tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.tex").write_text("precious")
