@@ -18,10 +18,14 @@ from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import hole, straight
 from tests.training.runs import ROOT, environment
 
+PARTS = (
+    36  # files, each a shard: four kills come after 12 at most, and a fast machine does some more
+)
+
 
 @pytest.fixture
 def work(tmp_path):
-    for part in range(12):
+    for part in range(PARTS):
         paths = [straight(0.5 + 0.1 * n, y=0.01 * part) for n in range(4)]
         write_guide_paths(tmp_path / f"walks_{part:02d}.npz", paths, ["reached"] * 4)
     write_scene(tmp_path / "hole.json", hole())
@@ -65,10 +69,10 @@ def test_killed_in_mid_run_nothing_is_lost_and_nothing_done_twice(work):
     guides = sorted(work.glob("walks_*.npz"))
     for folder in (out, work / "whole"):
         label(guides, scene=work / "hole.json", out=folder, planner="sl1m", processes=1)
-    assert 0 < len(written) < 12
+    assert 0 < len(written) < PARTS
     assert all(path.stat().st_mtime_ns == then for path, then in written.items())
     assert verdicts_of(out) == verdicts_of(work / "whole")
-    assert len(verdicts_of(out)) == 48
+    assert len(verdicts_of(out)) == 4 * PARTS
 
 
 def test_two_do_not_label_into_one_folder(work):
