@@ -17,7 +17,6 @@ def learned_kinds(folder: Path) -> list[Kind]:
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.onnx_metadata import describe
     from jaxleas.surrogates import Identity, Surrogate, read_surrogate, write_surrogate
-    from jaxleas.surrogates.features import MOTION_FEATURES
     from jaxleas.surrogates.network import Weights
     from jaxleas.training.checkpoints import Checkpoints
     from jaxleas.training.policy import SteeringPolicy, write_policy
@@ -38,15 +37,8 @@ def learned_kinds(folder: Path) -> list[Kind]:
     )
     write_policy(folder / "policy.npz", policy)
     (folder / "policy.onnx").write_bytes(build_onnx(policy, describe(config)))
-    identity = Identity(
-        planner="sampling",
-        parameters={"keep_every": 5, "samples": 100},
-        robot=config.robot,
-        observation=config.observation,
-        height_low=config.height_low,
-        height_high=config.height_high,
-    )
-    inputs, code, hidden = len(identity.near) + MOTION_FEATURES, 5, 4
+    identity = Identity.of("sampling", {"keep_every": 5, "samples": 100}, config)
+    inputs, code, hidden = identity.inputs, 5, 4
     weights = Weights(
         encoder=some(inputs, code),
         encoder_bias=some(code),

@@ -6,11 +6,9 @@ from benchmarks.context import Context
 from benchmarks.measurements import Figure, Metric
 from benchmarks.workloads.environment import ARENA_ROBOTS, rates
 from benchmarks.workloads.workload import Workload
-from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import FitSettings, Identity, Surrogate, SurrogateForesight
-from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.surrogates.network import initial_weights
 
 PLANNER = "sampling"
@@ -18,19 +16,10 @@ PLANNER = "sampling"
 
 def untrained_surrogate(env: SteeringEnv) -> Surrogate:
     """Return a surrogate of the size that is fitted by default: it costs what a fitted one does."""
-    config: SteeringConfig = env.config
     fit = FitSettings()
-    identity = Identity(
-        planner=PLANNER,
-        parameters=settings_from(PLANNER).model_dump(mode="json"),
-        robot=config.robot,
-        observation=config.observation,
-        height_low=config.height_low,
-        height_high=config.height_high,
-    )
+    identity = Identity.of(PLANNER, settings_from(PLANNER).model_dump(mode="json"), env.config)
     one = jax.numpy.float32(1.0)
-    size = len(identity.near) + MOTION_FEATURES
-    weights = initial_weights(jax.random.key(0), size, fit.code, fit.hidden)
+    weights = initial_weights(jax.random.key(0), identity.inputs, fit.code, fit.hidden)
     return Surrogate(weights=weights, scale=one, shift=0.0 * one, identity=identity)
 
 

@@ -84,12 +84,5 @@ class Workplace:
     @property
     def identity(self) -> Identity:
         """Whose stand-in the surrogates are."""
-        env = self.run_config.env
-        return Identity(
-            planner=self.config.planner,
-            parameters=self.labelling.model_dump(mode="json"),
-            robot=env.robot,
-            observation=env.observation,
-            height_low=env.height_low,
-            height_high=env.height_high,
-        )
+        parameters = self.labelling.model_dump(mode="json")
+        return Identity.of(self.config.planner, parameters, self.run_config.env)

@@ -61,14 +61,7 @@ def fit(
             f"{labels[0]} holds verdicts on {found.robot}, but the policy is for {config.robot}:"
             " label guide paths of that robot"
         )
-    identity = Identity(
-        planner=found.planner,
-        parameters=found.parameters,
-        robot=config.robot,
-        observation=config.observation,
-        height_low=config.height_low,
-        height_high=config.height_high,
-    )
+    identity = Identity.of(found.planner, found.parameters, config)
 
     def progress(epoch: int, loss: float) -> None:
         print(f"epoch {epoch} of {epochs}: {loss:.5f} nats on the terrain held out", flush=True)

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.surrogates.calibration import platt
-from jaxleas.surrogates.features import MOTION_FEATURES, mirrored, walk_features
+from jaxleas.surrogates.features import mirrored, walk_features
 from jaxleas.surrogates.network import Weights, initial_weights, recur
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.surrogates.verdict_report import failure_along, report_on
@@ -115,8 +115,7 @@ def fit(
     split = split_by_terrain(walks, settings.held_out, settings.seed)
     hazards = _Hazards(env, identity)
     key, order_key = jax.random.split(jax.random.key(settings.seed))
-    size = len(identity.near) + MOTION_FEATURES
-    weights = initial_weights(key, size, settings.code, settings.hidden)
+    weights = initial_weights(key, identity.inputs, settings.code, settings.hidden)
     steps = settings.epochs * -(-len(split.learned) // settings.minibatch)
     rate = optax.cosine_decay_schedule(settings.learning_rate, steps)
     optimiser = optax.chain(

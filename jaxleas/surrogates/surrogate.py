@@ -1,7 +1,7 @@
 """A fitted surrogate: a contact planner's learned stand-in, and exactly which planner's."""
 
 from functools import cache
-from typing import Any
+from typing import Any, Self
 
 import jax
 import jax.numpy as jnp
@@ -13,7 +13,7 @@ from pydantic import JsonValue
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.surrogates.features import near_points
+from jaxleas.surrogates.features import MOTION_FEATURES, near_points
 from jaxleas.surrogates.network import Weights, recur
 from jaxleas.types.strict import Strict
 
@@ -33,20 +33,38 @@ class Identity(Strict):
     height_high: float
     """and from above here [m]"""
 
+    @classmethod
+    def of(cls, planner: str, parameters: dict[str, JsonValue], env: SteeringConfig) -> Self:
+        """Return whose stand-in a surrogate of a planner is in an environment.
+
+        Args:
+            planner: its name.
+            parameters: of the planner, all of them.
+            env: configuration of the environment.
+        """
+        return cls(
+            planner=planner,
+            parameters=parameters,
+            robot=env.robot,
+            observation=env.observation,
+            height_low=env.height_low,
+            height_high=env.height_high,
+        )
+
     @property
     def keep_every(self) -> int:
         """Time steps from one configuration that the planner is asked about to the next."""
         return int(self.parameters["keep_every"])  # type: ignore[arg-type]
 
     @property
-    def points(self) -> Float[np.ndarray, "points 2"]:
-        """Points of the local terrain that the surrogate is shown, in the root frame [m]."""
-        return _points_in_root(self.robot, self.observation)[self.near]
+    def near(self) -> Int[np.ndarray, " points"]:
+        """Indices of the points that the surrogate is shown among all of the local terrain."""
+        return near_points(_points_in_root(self.robot, self.observation))
 
     @property
-    def near(self) -> Int[np.ndarray, " points"]:
-        """Indices of these among all points of the local terrain."""
-        return near_points(_points_in_root(self.robot, self.observation))
+    def inputs(self) -> int:
+        """Number of features that the network is shown."""
+        return len(self.near) + MOTION_FEATURES
 
 
 @cache

@@ -11,7 +11,6 @@ from pydantic import ValidationError
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.files import parse_json, read_npz, write_npz
-from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.surrogates.network import Weights
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.types import InputError
@@ -123,12 +122,11 @@ def require_fit(
 
 def _check(path: str | Path, arrays: dict[str, np.ndarray], identity: Identity) -> None:
     """Refuse arrays that are no network for this identity."""
-    size = len(identity.near) + MOTION_FEATURES
     code, hidden = arrays["encoder_bias"].size, arrays["head"].size
     expected = {
         "scale": (),
         "shift": (),
-        "encoder": (size, code),
+        "encoder": (identity.inputs, code),
         "encoder_bias": (code,),
         "gates": (code + hidden, 2 * hidden),
         "gates_bias": (2 * hidden,),

@@ -18,9 +18,8 @@ from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import hole, straight
 from tests.training.runs import ROOT, environment
 
-PARTS = (
-    36  # files, each a shard: four kills come after 12 at most, and a fast machine does some more
-)
+# Files, each a shard: four kills come after 12 at most, and a fast machine does some more.
+PARTS = 36
 
 
 @pytest.fixture
