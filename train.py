@@ -19,9 +19,9 @@ from jaxleas.cli_guard import UsageError, run_guarded
 
 # JAX takes a second to import: not before the command line has been understood.
 if TYPE_CHECKING:
+    from jaxleas.runs.folder import RunFolder
     from jaxleas.training.config import RunConfig
     from jaxleas.training.devices import Devices
-    from jaxleas.training.run_folder import RunFolder
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -71,10 +71,10 @@ def _train_together(
 def _open(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
 ) -> "tuple[RunConfig, Devices, RunFolder]":
+    from jaxleas.configuration.loading import load_config, to_yaml
+    from jaxleas.runs.folder import RunFolder
+    from jaxleas.runs.watching import require_watchers
     from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config, to_yaml
-    from jaxleas.training.run_folder import RunFolder
-    from jaxleas.training.watching import require_watchers
 
     if given.resume:
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
@@ -98,8 +98,8 @@ def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
 
 
 def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> None:
-    from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.training.loop import assist, train
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     keep_compiled_programs()
     if run is None:

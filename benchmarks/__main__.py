@@ -40,8 +40,8 @@ def main(arguments: Sequence[str]) -> None:
     from benchmarks.rival import default_python, require_rival
     from benchmarks.suite import choose, measure
     from benchmarks.table import show
+    from jaxleas.configuration.loading import load_config
     from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config
     from jaxleas.training.cores import share_cores
     from jaxleas.types.errors import InputError, JaxleasError
 

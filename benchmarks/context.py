@@ -8,10 +8,10 @@ from typing import Any
 from benchmarks.arithmetic import env_limit, ppo_limit, step_work
 from benchmarks.rival import Rival
 from benchmarks.roofs import Roofs
+from jaxleas.configuration.loading import load_config
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config
 from jaxleas.training.worlds import training_world
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -11,10 +11,10 @@ from typing import Literal, Self
 import jax
 from pydantic import ValidationError
 
+from jaxleas.configuration.strict import Strict
 from jaxleas.files import read_json, write_json
 from jaxleas.training.cores import cores
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 Better = Literal["higher", "lower"]
 

@@ -12,7 +12,8 @@ import jaxleas
 
 ROOT = Path(jaxleas.__file__).parent
 ORDER = (
-    *("types", "files", "geometry", "robots", "terrain", "conditions", "envs", "training"),
+    *("types", "xla", "files", "configuration", "workers", "runs"),
+    *("geometry", "robots", "terrain", "conditions", "envs", "training"),
     *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation"),
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "cli"),

@@ -15,14 +15,14 @@ import jax.numpy as jnp
 import pytest
 
 from jaxleas import cli
+from jaxleas.configuration.fields import fields_of
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
+from jaxleas.runs.folder import RunFolder
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain import write_height_map
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
-from jaxleas.training.configuration_fields import fields_of
-from jaxleas.training.metrics import read_metrics
 from jaxleas.training.policy import write_policy
-from jaxleas.training.run_folder import RunFolder
 from tests.guide.walkers import flat_map, random_policy, standing
 from tests.training.runs import tiny
 

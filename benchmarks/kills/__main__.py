@@ -119,7 +119,7 @@ def _import_everything(cache: str) -> None:
     jax.config.update("jax_compilation_cache_dir", cache)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
 
-    import jaxleas.training.configuration
+    import jaxleas.configuration.loading
     import jaxleas.training.loop  # noqa: F401
 
 

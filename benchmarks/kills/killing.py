@@ -11,7 +11,7 @@ from typing import Any
 from benchmarks.kills.moments import cut_power, draw_moment, signal_of
 from benchmarks.kills.training import UPDATES, Training, content, write_config
 from jaxleas.files.npz import DamagedError
-from jaxleas.training.run_folder import RunFolder
+from jaxleas.runs.folder import RunFolder
 from jaxleas.types import InputError
 
 INTERRUPTED = 130

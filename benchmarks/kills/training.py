@@ -10,7 +10,7 @@ import yaml
 
 from benchmarks.tiny import tiny_training
 from jaxleas.files.npz import read_arrays
-from jaxleas.training.metrics import read_metrics
+from jaxleas.runs.metrics import read_metrics
 
 UPDATES = 24
 

@@ -19,6 +19,7 @@ _PART = {
 
 
 def judgement_kinds(folder: Path) -> list[Kind]:
+    from jaxleas.configuration.loading import load_config
     from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.folder import read_begun_with, read_done
     from jaxleas.distillation.judging import read_judged
@@ -30,7 +31,6 @@ def judgement_kinds(folder: Path) -> list[Kind]:
         read_evaluation,
         write_evaluation,
     )
-    from jaxleas.training.configuration import load_config
 
     shares = {"reached": 0.9, "invalid": 0.1, "stopped": 0.0, "low": 0.6, "high": 0.98}
     cell = CellResult.model_validate(

@@ -16,9 +16,9 @@ def learned_kinds(folder: Path) -> list[Kind]:
     from jaxleas.export.onnx_file import build_onnx
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.onnx_metadata import describe
+    from jaxleas.runs.checkpoints import Checkpoints
     from jaxleas.surrogates import Identity, Surrogate, read_surrogate, write_surrogate
     from jaxleas.surrogates.network import Weights
-    from jaxleas.training.checkpoints import Checkpoints
     from jaxleas.training.policy import SteeringPolicy, write_policy
 
     config = SteeringConfig(observation="icra81")

@@ -19,13 +19,13 @@ PROVENANCE = {
 
 
 def run_kinds(folder: Path) -> list[Kind]:
+    from jaxleas.configuration.loading import load_config, to_yaml
     from jaxleas.records import compare_runs, read_record
     from jaxleas.records.listing import as_json, table
+    from jaxleas.runs.folder import RunFolder
+    from jaxleas.runs.metrics import read_metrics
+    from jaxleas.runs.watching.identity import lasting_identity
     from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config, to_yaml
-    from jaxleas.training.metrics import read_metrics
-    from jaxleas.training.run_folder import RunFolder
-    from jaxleas.training.watching.identity import lasting_identity
     from jaxleas.types import InputError
 
     config, base, metrics = (folder / n for n in ("config.yaml", "base.yaml", "metrics.jsonl"))

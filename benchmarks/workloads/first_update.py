@@ -11,12 +11,12 @@ begin = time.perf_counter()
 
 import jax  # noqa: E402
 
-from jaxleas.training.compilation import keep_compiled_programs  # noqa: E402
+from jaxleas.configuration.loading import load_config  # noqa: E402
 from jaxleas.training.config import RunConfig  # noqa: E402
-from jaxleas.training.configuration import load_config  # noqa: E402
 from jaxleas.training.cores import share_cores  # noqa: E402
 from jaxleas.training.devices import choose_devices  # noqa: E402
 from jaxleas.training.loop import Trainer  # noqa: E402
+from jaxleas.xla.compilation import keep_compiled_programs  # noqa: E402
 
 
 def main() -> None:

@@ -26,6 +26,7 @@ def distill(
     """
     import os
 
+    from jaxleas.configuration.loading import load_config
     from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
@@ -34,10 +35,9 @@ def distill(
     from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
     from jaxleas.labels.own_planner import require_said
-    from jaxleas.training.compilation import keep_compiled_programs
-    from jaxleas.training.configuration import load_config
     from jaxleas.training.cores import share_cores
     from jaxleas.training.devices import choose_devices
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")

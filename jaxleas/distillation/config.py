@@ -5,11 +5,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, JsonValue, field_validator, model_validator
 
+from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Whole
+from jaxleas.configuration.strict import Strict
 from jaxleas.evaluation.recipes import RECIPES
 from jaxleas.surrogates.fit import FitSettings
 from jaxleas.training.config import RunConfig, TerrainConfig
-from jaxleas.types.bounds import Count, NonNegative, Positive, Seed, Whole
-from jaxleas.types.strict import Strict
 
 Observation = Literal["thesis144", "thesis145", "icra81"]
 RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]

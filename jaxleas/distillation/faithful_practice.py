@@ -6,18 +6,18 @@ from typing import Any
 
 import jax
 
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.practice import conclude
-from jaxleas.training.checkpoints import Checkpoints
-from jaxleas.training.configuration import to_yaml
+from jaxleas.runs.checkpoints import Checkpoints
+from jaxleas.runs.folder import RunFolder
+from jaxleas.runs.interruption import Interruption
+from jaxleas.runs.metrics import MetricsLog
+from jaxleas.runs.progress import Progress
 from jaxleas.training.held_out import make_examination
-from jaxleas.training.interruption import Interruption
 from jaxleas.training.loop import POLICY_FILE, InterruptedRunError, NonFiniteError
-from jaxleas.training.metrics import MetricsLog
 from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.progress import Progress
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, TrainState
 from jaxleas.training.worlds import held_out_world
 

@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
 from jaxleas.files import write_json, write_text
 from jaxleas.labels.settings import settings_from
+from jaxleas.runs.folder import RunFolder
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.types.errors import InputError
 
 

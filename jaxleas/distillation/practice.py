@@ -6,18 +6,18 @@ from pathlib import Path
 import jax
 
 from jaxleas.conditions import Foresight
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import write_json
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
+from jaxleas.runs.folder import RunFolder
 from jaxleas.training.config import NetworkConfig, RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
 from jaxleas.training.networks import initial_normaliser, make_networks
 from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, fresh_networks
 
 

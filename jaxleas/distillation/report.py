@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from jaxleas.configuration.loading import load_config
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, read_run_data
@@ -17,7 +18,6 @@ from jaxleas.evaluation.side_by_side import rows as side_rows
 from jaxleas.evaluation.table import cell_title, percent
 from jaxleas.evaluation.thesis_tables import thesis_tables
 from jaxleas.files import write_text
-from jaxleas.training.configuration import load_config
 
 TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # of what a surrogate is worth

@@ -12,7 +12,7 @@ from jaxleas.evaluation.figure_file import Figures, read_figures
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation
 from jaxleas.files import is_file
 from jaxleas.labels.shards import read_verdicts
-from jaxleas.training.metrics import read_metrics
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.types.errors import InputError
 
 FIGURES = "figures.json"

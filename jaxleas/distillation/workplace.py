@@ -9,6 +9,7 @@ from jaxleas.distillation.practice import read_run
 from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
+from jaxleas.labels.judging import PLANNER_MODULES
 from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import Identity
 from jaxleas.terrain.generator import generate_arena
@@ -65,7 +66,7 @@ class Workplace:
         terrain = config.practice.terrain or own.terrain
         self.run_config = own.model_copy(update={"terrain": terrain})
         self.env = SteeringEnv(self.run_config.env)
-        self.workers = ProcessWorkers(processes)
+        self.workers = ProcessWorkers(processes, PLANNER_MODULES)
         self.judge = Judge(config.planner, self.settings, workers=self.workers)
 
     @cached_property

@@ -13,7 +13,8 @@ from jaxleas.evaluation.forecast import Forecast
 from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.labels import Here, Judge, PlannerSettings, ProcessWorkers
+from jaxleas.labels import Judge, PlannerSettings
+from jaxleas.labels.judging import planner_workers
 
 Results = dict[ResultKey, CellResult]
 _SAME = ("suite", "seed", "robot", "foresight")
@@ -49,7 +50,7 @@ def compare(
     Returns:
         All results, those of the file included.
     """
-    workers = Here() if processes == 1 else ProcessWorkers(processes)
+    workers = planner_workers(processes)
     with ExitStack() as stack:
         stack.callback(workers.close)
         chosen = {} if settings is None else settings

@@ -5,9 +5,9 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from jaxleas.configuration.bounds import Count, Fraction, NonNegative
+from jaxleas.configuration.strict import Strict
 from jaxleas.files import read_typed, write_json
-from jaxleas.types.bounds import Count, Fraction, NonNegative
-from jaxleas.types.strict import Strict
 
 
 class StepRow(Strict):

@@ -12,7 +12,7 @@ from jaxleas.evaluation.figures import KEEP_EVERY, measure_figures
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.labels import Here, ProcessWorkers
+from jaxleas.labels.judging import planner_workers
 from jaxleas.labels.settings import settings_from
 from jaxleas.types.errors import InputError
 
@@ -79,7 +79,7 @@ def figures(
     found = _opened(out, head)
     write_figures(out, found)
     count = processes or os.cpu_count() or 1
-    workers = Here() if count == 1 else ProcessWorkers(count)
+    workers = planner_workers(count)
     try:
         with Reporter() as reporter:
             found = measure_figures(

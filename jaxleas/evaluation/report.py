@@ -23,7 +23,7 @@ from jaxleas.evaluation.table import (
     rows,
 )
 from jaxleas.files import read_json, write_bytes, write_text
-from jaxleas.training.metrics import read_metrics
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.types import InputError
 
 TEMPLATE = "report.html"

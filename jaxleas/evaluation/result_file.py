@@ -6,9 +6,9 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.configuration.bounds import Count, Fraction, NonNegative
+from jaxleas.configuration.strict import Strict
 from jaxleas.files import read_typed, write_json
-from jaxleas.types.bounds import Count, Fraction, NonNegative
-from jaxleas.types.strict import Strict
 
 VERSION = 1
 

@@ -49,12 +49,12 @@ def _export_run(folder: Path, out: Path | None) -> Path:
     """Export a run; return the folder of the artifacts."""
     import jax
 
+    from jaxleas.configuration.loading import load_config, to_yaml
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.export.parity import record_observations
     from jaxleas.export.write import export_policy
     from jaxleas.guide.loading import policy_file
     from jaxleas.training.config import RunConfig
-    from jaxleas.training.configuration import load_config, to_yaml
     from jaxleas.training.policy import read_policy
     from jaxleas.training.worlds import held_out_world
 

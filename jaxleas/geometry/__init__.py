@@ -1,6 +1,5 @@
 """Rotations, boxes, polytopes; whether polygons meet them, and what lies inside."""
 
-from jaxleas.geometry.angles import bearing, sine_cosine
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.clipping import clip_polygon
 from jaxleas.geometry.intersections import pack_polygons, polygons_meet_polytope
@@ -12,6 +11,7 @@ from jaxleas.geometry.rotations import (
     squared_length,
     wrap_angle,
 )
+from jaxleas.xla.angles import bearing, sine_cosine
 
 __all__ = [
     "Box",

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.geometry.angles import sine_cosine
+from jaxleas.xla.angles import sine_cosine
 
 
 def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"]) -> Array:

@@ -34,7 +34,7 @@ def policy_file(run: str | Path) -> Path:
     Raises:
         InputError: the folder is missing, no run folder, half-written, or of another version.
     """
-    from jaxleas.training.run_folder import RunFolder
+    from jaxleas.runs.folder import RunFolder
 
     folder = RunFolder.open(run, needs_checkpoint=False)
     file = folder.path / "policy.npz"

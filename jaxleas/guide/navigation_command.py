@@ -68,7 +68,7 @@ def navigate(
     from jaxleas.guide.roadmaps.exact import judge_exactly, require_exact_start, scene_of
     from jaxleas.guide.roadmaps.search import import_ompl
     from jaxleas.terrain.importers import import_terrain
-    from jaxleas.training.compilation import keep_compiled_programs
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)
     goal, _ = _place("--to", to, may_turn=False)

@@ -7,7 +7,7 @@ from jaxleas.labels.planners import judge, judge_over
 from jaxleas.labels.settings import MipSettings, PlannerSettings, Sl1mSettings
 from jaxleas.labels.shards import Shard, read_verdicts
 from jaxleas.labels.verdict import Verdict
-from jaxleas.labels.workers import Here, ProcessWorkers, WorkerError, Workers
+from jaxleas.workers.processes import Here, ProcessWorkers, WorkerError, Workers
 
 __all__ = [
     "Here",

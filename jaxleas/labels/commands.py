@@ -9,7 +9,7 @@ from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
     from jaxleas.files import FolderLock
-    from jaxleas.labels.workers import Workers
+    from jaxleas.workers.processes import Workers
 
 
 def label(
@@ -62,7 +62,7 @@ def label(
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.settings import settings_from, settings_of
     from jaxleas.labels.shards import read_verdicts
-    from jaxleas.labels.workers import require_count
+    from jaxleas.workers.processes import require_count
 
     settings = settings_from(
         planner,
@@ -124,11 +124,10 @@ def _held(out: Path) -> "FolderLock":
 
 def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":
     """Return workers: no more than there are tasks, and this process where one is enough."""
-    from jaxleas.labels.workers import Here, ProcessWorkers
+    from jaxleas.labels.judging import planner_workers
 
     if workers == "ray":
-        from jaxleas.labels.ray_workers import RayWorkers
+        from jaxleas.workers.ray_workers import RayWorkers
 
         return RayWorkers(processes)
-    count = min(processes or os.cpu_count() or 1, tasks)
-    return Here() if count <= 1 else ProcessWorkers(count)
+    return planner_workers(max(1, min(processes or os.cpu_count() or 1, tasks)))

@@ -10,11 +10,13 @@ import numpy as np
 from jaxleas.labels.planners import judge_over
 from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.verdict import Verdict
-from jaxleas.labels.workers import Here, ProcessWorkers, Workers, require_count
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
+from jaxleas.workers import Workers, workers_for
 
+PLANNER_MODULES = ("jaxleas.labels.planners",)
+"""What workers that ask exact planners import before they are forked."""
 _MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
 """Guide paths, 8 for others: enough to work on abreast, few to do again when a worker dies."""
 _TASKS_EACH = 4  # for every worker, so that all end at about the same time
@@ -28,6 +30,15 @@ class _Task:
     scenes: tuple[Scene, ...]
     paths: tuple[GuidePath, ...]
     scene_index: tuple[int, ...]
+
+
+def planner_workers(count: int) -> Workers:
+    """Return workers for exact planners: this process for one, several processes for more.
+
+    Raises:
+        InputError: the count is below 1.
+    """
+    return workers_for(count, PLANNER_MODULES)
 
 
 class Judge:
@@ -61,8 +72,7 @@ class Judge:
         """
         self.planner = planner
         self.settings = require_settings(planner, settings)
-        require_count(processes)
-        self._workers = workers or (Here() if processes == 1 else ProcessWorkers(processes))
+        self._workers = workers or planner_workers(processes)
 
     def judge(
         self,

@@ -7,9 +7,9 @@ from jaxleas.guide.files import read_guide_paths
 from jaxleas.labels.planners import judge
 from jaxleas.labels.settings import PlannerSettings, require_settings
 from jaxleas.labels.shards import Shard, provenance_of, write_shard
-from jaxleas.labels.workers import Workers
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError
+from jaxleas.workers.processes import Workers
 
 GUIDES_A_SHARD = {"sampling": 64, "mip": 16, "sl1m": 16}
 """16 for others. Enough to work on abreast, few enough to lose when interrupted."""

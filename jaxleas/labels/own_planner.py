@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from pydantic import PositiveInt
 
+from jaxleas.configuration.strict import Strict
 from jaxleas.labels.verdict import Verdict, mean_step
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, ValidationError
 
+from jaxleas.configuration.strict import Strict
+from jaxleas.configuration.yaml_text import parse_yaml
 from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
 from jaxleas.contacts.problem import Model
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sl1m import MAX_COMBINATIONS
 from jaxleas.contacts.slack_weights import SlackWeights
 from jaxleas.labels.own_planner import OwnPlanner, is_own, load_planner
-from jaxleas.training.configuration_yaml import parse_yaml
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 
 class PhaseSettings(Strict):

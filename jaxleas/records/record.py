@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from jaxleas.configuration.yaml_text import read_mapping
 from jaxleas.evaluation.examination import BASELINES
 from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
 from jaxleas.files import read_json
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration_yaml import read_mapping
-from jaxleas.training.metrics import read_metrics
 from jaxleas.types.errors import InputError
 
 State = Literal["finished", "running", "interrupted", "damaged"]

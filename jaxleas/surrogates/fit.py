@@ -11,6 +11,7 @@ import optax
 from jax import Array
 from pydantic import Field
 
+from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.surrogates.calibration import platt
 from jaxleas.surrogates.features import mirrored, walk_features
@@ -20,7 +21,6 @@ from jaxleas.surrogates.verdict_report import failure_along, report_on
 from jaxleas.surrogates.walks import LabelledWalks
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import InputError, RootMotion
-from jaxleas.types.strict import Strict
 
 LEAST_FAILURES = 20  # on the terrain that is learned from
 LEAST_TERRAINS = 4

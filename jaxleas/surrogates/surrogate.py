@@ -11,11 +11,11 @@ from jax import Array
 from jaxtyping import Float, Int
 from pydantic import JsonValue
 
+from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.surrogates.features import MOTION_FEATURES, near_points
 from jaxleas.surrogates.network import Weights, recur
-from jaxleas.types.strict import Strict
 
 
 class Identity(Strict):

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from jaxleas.configuration.loading import load_config
+from jaxleas.configuration.values import require_field, require_value, with_values
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.labels.settings import settings_from
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config
-from jaxleas.training.configuration_values import require_field, require_value, with_values
 from jaxleas.training.ppo_params import SWEPT_FIELDS
 from jaxleas.types.errors import InputError
 

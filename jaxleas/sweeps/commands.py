@@ -57,7 +57,7 @@ def population(population: Path, *, out: Path) -> None:
     from jaxleas.sweeps.population_folder import hold_population
     from jaxleas.sweeps.population_loop import train_population
     from jaxleas.sweeps.population_table import population_table
-    from jaxleas.training.compilation import keep_compiled_programs
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     members = open_population(population)
     use_all_cores()

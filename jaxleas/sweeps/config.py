@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
 
-from jaxleas.types.bounds import Count, Seed
-from jaxleas.types.strict import Strict
+from jaxleas.configuration.bounds import Count, Seed
+from jaxleas.configuration.strict import Strict
 
 Scalar = bool | int | float | str
 

@@ -11,8 +11,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
+from jaxleas.configuration.strict import Strict
 from jaxleas.sweeps.config import Dimension
-from jaxleas.types.strict import Strict
 
 Values = dict[str, Any]
 

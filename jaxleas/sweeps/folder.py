@@ -14,11 +14,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from uuid import uuid4
 
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.files import FolderLock, read_typed, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.types.errors import InputError
 
 VERSION = 1

@@ -174,8 +174,8 @@ def _train_together(home: Path, runs: list[Path], configs: list[Any]) -> list[tu
 
 
 def _outcome(run: Path, config: Any, objectives: Any, state: str, reason: str) -> Outcome:
+    from jaxleas.runs.metrics import read_metrics
     from jaxleas.sweeps.objectives import measure
-    from jaxleas.training.metrics import read_metrics
 
     metrics = run / "metrics.jsonl"
     rows = read_metrics(metrics) if metrics.is_file() else []
@@ -201,7 +201,7 @@ def _die_with_parent() -> None:
 def work(path: str | Path) -> None:
     """Do a job in a process that has touched no device yet."""
     from jaxleas.sweeps.devices import use_all_cores
-    from jaxleas.training.compilation import keep_compiled_programs
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     if len(read_job(path).runs) > 1:
         use_all_cores()

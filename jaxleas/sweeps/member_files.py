@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import Any
 
+from jaxleas.runs.checkpoints import Checkpoints
+from jaxleas.runs.metrics import MetricsLog
 from jaxleas.sweeps.population import Population, member_of
 from jaxleas.sweeps.run_folders import hold_run_folder
-from jaxleas.training.checkpoints import Checkpoints
 from jaxleas.training.config import RunConfig
-from jaxleas.training.metrics import MetricsLog
 from jaxleas.training.policy import write_policy
 from jaxleas.training.train_state import TrainState
 

@@ -10,8 +10,8 @@ from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide.leas import leas
 from jaxleas.labels import Judge
 from jaxleas.labels.settings import settings_from
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
-from jaxleas.training.metrics import read_metrics
 from jaxleas.training.policy import read_policy
 
 SUCCESS = "held_out/reached"

@@ -14,10 +14,10 @@ import numpy as np
 from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
+from jaxleas.configuration.fields import fields_of
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration_fields import fields_of
 from jaxleas.training.held_out import make_examination
 from jaxleas.training.networks import make_networks
 from jaxleas.training.policy import SteeringPolicy, policy_of

@@ -7,15 +7,15 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from jaxleas.configuration.loading import load_config
+from jaxleas.configuration.strict import Strict
+from jaxleas.configuration.values import require_field, with_values
 from jaxleas.sweeps.border import check_dimension
 from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config
-from jaxleas.training.configuration_values import require_field, with_values
 from jaxleas.training.ppo_params import SWEPT_FIELDS
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 
 class PopulationConfig(Strict):

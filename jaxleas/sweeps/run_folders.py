@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.runs.folder import RunFolder
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.types.errors import InputError
 
 # What a run folder holds before the record that says it is whole.

@@ -11,9 +11,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
-from jaxleas.labels.ray_workers import RayWorkers
 from jaxleas.sweeps.job import LIFELINE, work
 from jaxleas.types.errors import InputError
+from jaxleas.workers.ray_workers import RayWorkers
 
 _COMMAND = (sys.executable, "-m", "jaxleas.sweeps.job")
 GRACE = 60.0  # to save what was done, after being asked to stop [s]

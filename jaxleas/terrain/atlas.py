@@ -9,11 +9,11 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int, UInt32
 
-from jaxleas.geometry.angles import sine_cosine
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.huge_pages import hold_in_huge_pages
-from jaxleas.types.compute_once import compute_once
 from jaxleas.types.errors import InputError
+from jaxleas.xla.angles import sine_cosine
+from jaxleas.xla.compute_once import compute_once
+from jaxleas.xla.huge_pages import hold_in_huge_pages
 
 # No ground. Far below every robot, so that a height relative to any root stays below
 # conditions.VOID_IN_ROOT, and finite, so that no NaN can enter the training arithmetic.

@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, PositiveFloat, model_validator
 
-from jaxleas.types.bounds import Fraction
-from jaxleas.types.strict import Strict
+from jaxleas.configuration.bounds import Fraction
+from jaxleas.configuration.strict import Strict
 
 
 def _ordered(interval: tuple[float, float]) -> tuple[float, float]:

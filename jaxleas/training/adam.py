@@ -11,7 +11,7 @@ import optax
 from jax import Array
 from jaxtyping import Bool, Float
 
-from jaxleas.types.compute_once import compute_once
+from jaxleas.xla.compute_once import compute_once
 
 BETA_1, BETA_2, EPSILON = 0.9, 0.999, 1e-5
 

@@ -4,11 +4,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive, Seed
+from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.seeds import MAX_TRAINING_SEED
-from jaxleas.types.bounds import Count, Fraction, NonNegative, Positive, Seed
-from jaxleas.types.strict import Strict
 
 
 class LinkShares(Strict):
@@ -64,7 +64,7 @@ class NetworkConfig(Strict):
         """In what numbers this machine multiplies."""
         if self.products != "auto":
             return self.products
-        from jaxleas.training.matrix_units import native_products  # asks JAX for its devices
+        from jaxleas.xla.matrix_units import native_products  # asks JAX for its devices
 
         return native_products()
 

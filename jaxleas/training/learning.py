@@ -20,7 +20,7 @@ from jaxleas.training.loss import Experience, ppo_loss
 from jaxleas.training.networks import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, learning_rate
-from jaxleas.types.compute_once import compute_once
+from jaxleas.xla.compute_once import compute_once
 
 
 def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = None) -> Callable:

@@ -12,21 +12,21 @@ from jax import Array
 from jaxleas.conditions import Condition, Foresight
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
-from jaxleas.training.background import Background
-from jaxleas.training.checkpoints import Checkpoints, NoCheckpointError
+from jaxleas.runs.background import Background
+from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
+from jaxleas.runs.folder import RunFolder
+from jaxleas.runs.interruption import Interruption
+from jaxleas.runs.metrics import MetricsLog
+from jaxleas.runs.progress import Progress
+from jaxleas.runs.watching import require_watchers
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.held_out import make_examination
-from jaxleas.training.interruption import Interruption
-from jaxleas.training.metrics import MetricsLog
 from jaxleas.training.networks import make_networks
 from jaxleas.training.policy import SteeringPolicy, policy_of, read_policy, write_policy
 from jaxleas.training.ppo import make_train_step
 from jaxleas.training.processes import any_process, from_first
-from jaxleas.training.progress import Progress
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.train_state import Learned, TrainState, initial_state
-from jaxleas.training.watching import require_watchers
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import InputError, JaxleasError
 

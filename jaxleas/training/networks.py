@@ -19,7 +19,7 @@ from jaxleas.training.brax_blocks import (
     specs,
 )
 from jaxleas.training.config import NetworkConfig
-from jaxleas.types.compute_once import compute_once
+from jaxleas.xla.compute_once import compute_once
 
 # A constant input has no deviation: without floor and clip it explodes when it first moves.
 MIN_DEVIATION = 1e-2

@@ -189,10 +189,10 @@ def _drive(
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.standing import choose_start, require_start
     from jaxleas.terrain.atlas import make_atlas
-    from jaxleas.training.compilation import keep_compiled_programs
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.ground import look_near
     from jaxleas.viewer.walker import Walker
+    from jaxleas.xla.compilation import keep_compiled_programs
 
     keep_compiled_programs()
     loaded = [load_policy(each) for each in policies]

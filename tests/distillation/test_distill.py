@@ -5,18 +5,18 @@ import numpy as np
 import pytest
 
 from jaxleas import cli
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.opening import open_folder
 from jaxleas.distillation.practice import practice_config, read_run
 from jaxleas.distillation.workplace import Workplace
 from jaxleas.files import read_json
+from jaxleas.runs.folder import RunFolder
 from jaxleas.surrogates import read_surrogate
 from jaxleas.terrain.generator import generate_arena
-from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.loop import train
 from jaxleas.training.policy import read_policy
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
 

@@ -16,9 +16,9 @@ from jaxleas.distillation.labelling import Ground
 from jaxleas.distillation.practice import read_run
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.labels import Judge, ProcessWorkers, Verdict
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.loop import InterruptedRunError
-from jaxleas.training.metrics import read_metrics
 from jaxleas.training.train_state import Learned
 from jaxleas.training.worlds import training_world
 

@@ -8,11 +8,11 @@ from dataclasses import asdict
 import pytest
 
 from jaxleas import cli
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.report_data import count_labels, read_run_data
 from jaxleas.evaluation.result_file import write_evaluation
 from jaxleas.files import read_json, write_json
-from jaxleas.training.configuration import to_yaml
 from jaxleas.types import InputError
 
 from ..evaluation.test_exact import verdict

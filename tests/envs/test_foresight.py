@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv, draw_starts, take
 from jaxleas.envs.steering.starts import draw_picks, restart_where
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
 
 from .worlds import flat, height_map, world_of
 

@@ -10,10 +10,10 @@ from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import layout_named
 from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.runs.folder import RunFolder
 from jaxleas.terrain.scenarios import Scenario
 from jaxleas.terrain.scene import Scene
 from jaxleas.training.policy import SteeringPolicy, write_policy
-from jaxleas.training.run_folder import RunFolder
 
 
 @struct.dataclass

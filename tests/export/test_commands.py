@@ -2,11 +2,11 @@ import json
 
 import pytest
 
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.export.commands import export
 from jaxleas.files import write_json, write_text
 from jaxleas.guide import load_policy
 from jaxleas.training.config import HeldOutConfig, RunConfig, TerrainConfig
-from jaxleas.training.configuration import to_yaml
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.guide.walkers import random_policy

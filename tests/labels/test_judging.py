@@ -104,7 +104,7 @@ def test_only_the_task_of_the_dead_is_tried_again(workers, tmp_path):
 
 
 def test_a_task_that_kills_everybody_is_given_up(workers, tmp_path):
-    with pytest.raises(WorkerError, match=r"3 workers died over the same guide paths.*code 3"):
+    with pytest.raises(WorkerError, match=r"3 workers died over the same task.*code 3"):
         list(workers.run(note_and_die, [(tmp_path, number) for number in range(3)]))
     assert len(list(tmp_path.glob("1_*"))) == 3
 

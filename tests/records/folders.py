@@ -3,11 +3,11 @@
 import json
 from pathlib import Path
 
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.evaluation.result_file import CellResult, Evaluation, write_evaluation
 from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.runs.folder import RunFolder
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import to_yaml
-from jaxleas.training.run_folder import RunFolder
 
 STARTS = 200
 PPO = {"steps": 8000, "environments": 50, "unroll": 20, "minibatches": 2}

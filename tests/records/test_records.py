@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from jaxleas.cli import run as command
 from jaxleas.records import find_runs, read_record
-from jaxleas.training.run_folder import RunFolder
+from jaxleas.runs.folder import RunFolder
 from jaxleas.types.errors import InputError
 from tests.records.folders import judge, make_run
 

@@ -8,6 +8,8 @@ import jax
 import numpy as np
 import pytest
 
+from jaxleas.configuration.values import with_values
+from jaxleas.runs.folder import RunFolder
 from jaxleas.sweeps import population_loop
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
@@ -16,10 +18,8 @@ from jaxleas.sweeps.population import Population, require_one_program
 from jaxleas.sweeps.population_config import Members, open_population
 from jaxleas.sweeps.population_folder import hold_population
 from jaxleas.sweeps.population_loop import train_population
-from jaxleas.training.configuration_values import with_values
 from jaxleas.training.loop import InterruptedRunError, train
 from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
-from jaxleas.training.run_folder import RunFolder
 from jaxleas.types import InputError
 from tests.sweeps.files import write_population
 from tests.training.runs import tiny
@@ -127,7 +127,7 @@ def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkey
 
     calls = iter(range(100))
     monkeypatch.setattr(
-        "jaxleas.training.interruption.Interruption.requested",
+        "jaxleas.runs.interruption.Interruption.requested",
         property(lambda self: next(calls) >= 4, lambda self, value: None),
         raising=False,
     )

@@ -7,8 +7,8 @@ import pytest
 
 from jaxleas.terrain.atlas import VOID, make_atlas
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.huge_pages import hold_in_huge_pages
 from jaxleas.types import InputError
+from jaxleas.xla.huge_pages import hold_in_huge_pages
 
 
 def random_map(seed, shape, origin, resolution=0.1):

@@ -2,8 +2,8 @@
 
 import pytest
 
+from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.training.config import RunConfig
-from jaxleas.training.configuration import load_config, to_yaml
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
 

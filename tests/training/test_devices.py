@@ -11,8 +11,8 @@ import pytest
 import yaml
 
 from jaxleas.cli_guard import UsageError
+from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.devices import choose_devices
-from jaxleas.training.metrics import read_metrics
 from jaxleas.training.processes import connect
 from jaxleas.types import InputError
 
@@ -23,7 +23,7 @@ PATIENCE = 900  # with a program that hangs [s]
 TWO_DEVICES = """
 import json, sys
 import jax
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.training.devices import choose_devices
 from jaxleas.training.loop import Trainer
 from tests.training.runs import tiny

@@ -11,9 +11,9 @@ import pytest
 import yaml
 
 from benchmarks.tiny import tiny_training
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
+from jaxleas.runs.folder import RunFolder
 from jaxleas.training.loop import NonFiniteError, train
-from jaxleas.training.run_folder import RunFolder
 
 from .runs import start_training, tiny
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
-from jaxleas.types.strict import Strict
+from jaxleas.configuration.strict import Strict
 
 Heuristic = Literal["fixed_step", "manipulability", "effort", "reference"]
 

@@ -5,8 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.types.bounds import Count, Fraction, NonNegative, Positive
-from jaxleas.types.strict import Strict
+from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive
+from jaxleas.configuration.strict import Strict
 
 
 class MotionLimits(Strict):

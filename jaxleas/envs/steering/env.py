@@ -29,7 +29,7 @@ from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import RootMotion
-from jaxleas.types.compute_once import compute_once
+from jaxleas.xla.compute_once import compute_once
 
 
 class SteeringEnv:

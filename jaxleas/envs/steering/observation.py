@@ -6,9 +6,9 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import MOTION_SIZE
-from jaxleas.geometry.angles import bearing
 from jaxleas.geometry.rotations import rotate_by_yaw, squared_length
 from jaxleas.types import RootMotion
+from jaxleas.xla.angles import bearing
 
 MOST_SURFACES = 8.0  # around a robot, about: on rubble
 

@@ -10,9 +10,9 @@ import pytest
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import Here, label_shards, plan_shards, read_verdicts
 from jaxleas.labels.commands import label
-from jaxleas.labels.ray_workers import RayWorkers
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
+from jaxleas.workers.ray_workers import RayWorkers
 from tests.contacts.sampling.worlds import hole, straight
 from tests.labels.test_judging import complain, note_and_die_once
 

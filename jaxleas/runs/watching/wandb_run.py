@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from jaxleas.training.watching.identity import lasting_identity
-from jaxleas.training.watching.watcher import Status
+from jaxleas.runs.watching.identity import lasting_identity
+from jaxleas.runs.watching.watcher import Status
 from jaxleas.types.errors import InputError
 
 PROJECT = "jaxleas"

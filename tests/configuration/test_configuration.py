@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, model_validator
 
-from jaxleas.training.configuration import load_config, to_yaml
+from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.configuration.strict import Strict
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 
 class Rates(Strict):

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jaxleas.training.watching.watcher import Status, Watcher
+from jaxleas.runs.watching.watcher import Status, Watcher
 
 MOST_WAITING = 10_000
 """Rows that wait for a slow watcher; later ones it never sees."""

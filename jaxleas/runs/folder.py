@@ -15,7 +15,7 @@ from types import TracebackType
 from typing import Self
 
 from jaxleas.files import FolderLock, read_json, sweep_temporaries, write_json, write_text
-from jaxleas.training.provenance import collect_provenance
+from jaxleas.runs.provenance import collect_provenance
 from jaxleas.types.errors import InputError
 
 FORMAT = 1

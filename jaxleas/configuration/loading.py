@@ -14,10 +14,10 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from jaxleas.training.configuration_fields import fields_of, help_text, nearest
-from jaxleas.training.configuration_yaml import dump_yaml, parse_yaml, read_mapping
+from jaxleas.configuration.fields import fields_of, help_text, nearest
+from jaxleas.configuration.strict import Strict
+from jaxleas.configuration.yaml_text import dump_yaml, parse_yaml, read_mapping
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 Model = TypeVar("Model", bound=Strict)
 # Where values come from, weakest first: (what to call it in a sentence, what it states).

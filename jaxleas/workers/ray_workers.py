@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import Any
 
-from jaxleas.labels.workers import MOST_DEATHS, Answer, Task, WorkerError, require_count
 from jaxleas.types.errors import InputError
+from jaxleas.workers.processes import MOST_DEATHS, Answer, Task, WorkerError, require_count
 
 
 class RayWorkers:
@@ -82,7 +82,7 @@ class RayWorkers:
         except errors.RayTaskError as error:
             raise error.cause from error
         except (errors.WorkerCrashedError, errors.OutOfMemoryError) as error:
-            raise WorkerError(f"{MOST_DEATHS} workers died over the same guide paths") from error
+            raise WorkerError(f"{MOST_DEATHS} workers died over the same task") from error
 
 
 def require_ray() -> Any:

@@ -7,8 +7,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from jaxleas.training.watching.identity import lasting_identity
-from jaxleas.training.watching.watcher import Status
+from jaxleas.runs.watching.identity import lasting_identity
+from jaxleas.runs.watching.watcher import Status
 
 EXPERIMENT = "jaxleas"
 """Where MLFLOW_EXPERIMENT_NAME names none."""

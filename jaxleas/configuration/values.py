@@ -5,10 +5,10 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from jaxleas.training.configuration import hint, merge, validate
-from jaxleas.training.configuration_fields import Field, fields_of
+from jaxleas.configuration.fields import Field, fields_of
+from jaxleas.configuration.loading import hint, merge, validate
+from jaxleas.configuration.strict import Strict
 from jaxleas.types.errors import InputError
-from jaxleas.types.strict import Strict
 
 Model = TypeVar("Model", bound=Strict)
 

@@ -15,7 +15,7 @@ import optax
 import pytest
 from flax import struct
 
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.types.errors import InputError
 
 
@@ -219,7 +219,7 @@ def test_what_cannot_be_kept_is_refused_when_saved(checkpoints: Checkpoints) -> 
 
 SAVER = """
 import sys
-from jaxleas.training.checkpoints import Checkpoints
+from jaxleas.runs.checkpoints import Checkpoints
 import numpy as np
 checkpoints = Checkpoints(sys.argv[1], keep_last=2)
 step = int(sys.argv[2])

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from jaxleas.training.background import Background
+from jaxleas.runs.background import Background
 
 
 def test_jobs_are_done_in_order_and_all_of_them():

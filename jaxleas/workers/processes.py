@@ -70,12 +70,20 @@ class ProcessWorkers:
     usual `if __name__ == "__main__":`, since workers import the main module.
 
     Attributes:
-        count: of processes.
+        count: number of processes.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, preload: Sequence[str] = ()) -> None:
+        """Prepare the workers; none is started yet.
+
+        Args:
+            count: number of processes.
+            preload: modules that a server of forks imports once for all of them: they must start
+                neither JAX nor threads.
+        """
         require_count(count)
         self.count = count
+        self._preload = tuple(preload)
         self._team: list[_Worker] = []
 
     @property
@@ -124,7 +132,7 @@ class ProcessWorkers:
             if idle:
                 worker = idle.pop()
             else:
-                worker = _Worker()
+                worker = _Worker(self._preload)
                 self._team.append(worker)
             index = waiting.popleft()
             if worker.take(function, tasks[index]):
@@ -143,8 +151,8 @@ class ProcessWorkers:
 class _Worker:
     """One process and the pipe to it."""
 
-    def __init__(self) -> None:
-        context = _context()
+    def __init__(self, preload: Sequence[str]) -> None:
+        context = _context(preload)
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=_work, args=(theirs,), daemon=True)
         with _one_thread_each():
@@ -179,15 +187,15 @@ class _Worker:
         self.connection.close()
 
 
-def _context() -> ForkServerContext | SpawnContext:
-    """Return how processes are started: by a server that imports the planners once for all.
+def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
+    """Return how processes are started: by a server that imports what they need once for all.
 
     Its forks start in milliseconds and are safe: the server itself starts neither JAX nor threads.
     """
     if "forkserver" not in get_all_start_methods():
         return get_context("spawn")
     context = get_context("forkserver")
-    context.set_forkserver_preload(["jaxleas.labels.planners"])
+    context.set_forkserver_preload(list(preload))
     return context
 
 
@@ -213,9 +221,23 @@ def _sendable(error: Exception) -> Exception:
 def _require_alive(deaths: int, worker: _Worker) -> None:
     if deaths >= MOST_DEATHS:
         raise WorkerError(
-            f"{deaths} workers died over the same guide paths, the last with exit code"
+            f"{deaths} workers died over the same task, the last with exit code"
             f" {worker.process.exitcode} (-9 is often too little memory: give fewer --processes)"
         )
+
+
+def workers_for(count: int, preload: Sequence[str] = ()) -> Workers:
+    """Return this process for one worker, and processes for several.
+
+    Args:
+        count: number of tasks done at the same time.
+        preload: modules that processes import once for all (`ProcessWorkers`).
+
+    Raises:
+        InputError: the count is below 1.
+    """
+    require_count(count)
+    return Here() if count == 1 else ProcessWorkers(count, preload)
 
 
 def require_count(count: int) -> None:

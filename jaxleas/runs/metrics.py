@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from jaxleas.files import parse_json, write_text
-from jaxleas.training.watching import Audience, Status, open_watchers
+from jaxleas.runs.watching import Audience, Status, open_watchers
 from jaxleas.types.errors import InputError
 
 _LOG = logging.getLogger("jaxleas")

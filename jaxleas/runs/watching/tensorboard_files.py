@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jaxleas.training.watching.watcher import Status
+from jaxleas.runs.watching.watcher import Status
 
 
 class TensorBoardWatcher:

@@ -2,7 +2,7 @@ import io
 
 import pytest
 
-from jaxleas.training.progress import Progress, _clock
+from jaxleas.runs.progress import Progress, _clock
 
 
 class Terminal(io.StringIO):
@@ -64,7 +64,7 @@ def test_ci_and_no_color_make_it_plain(monkeypatch, name: str) -> None:
 
 def test_resuming_counts_only_new_steps_as_speed(monkeypatch) -> None:
     now = [100.0]
-    monkeypatch.setattr("jaxleas.training.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("jaxleas.runs.progress.time.monotonic", lambda: now[0])
     stream = io.StringIO()
     with Progress(2000, start=1000, stream=stream) as progress:
         now[0] += 5.0
@@ -74,7 +74,7 @@ def test_resuming_counts_only_new_steps_as_speed(monkeypatch) -> None:
 
 def test_time_spent_compiling_does_not_spoil_the_speed(monkeypatch) -> None:
     now = [0.0]
-    monkeypatch.setattr("jaxleas.training.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("jaxleas.runs.progress.time.monotonic", lambda: now[0])
     stream = io.StringIO()
     with Progress(3000, stream=stream) as progress:
         for seconds in (60.0, 1.0, 1.0):

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from jaxleas.training import matrix_units
 from jaxleas.training.config import NetworkConfig
-from jaxleas.training.matrix_units import has_matrix_units, multiplies_bfloat16
+from jaxleas.xla import matrix_units
+from jaxleas.xla.matrix_units import has_matrix_units, multiplies_bfloat16
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from jaxleas.training import provenance
-from jaxleas.training.run_folder import RunFolder
+from jaxleas.runs import provenance
+from jaxleas.runs.folder import RunFolder
 from jaxleas.types.errors import InputError
 
 COMMAND = ["train.py", "c.yaml"]
@@ -88,7 +88,7 @@ def test_two_writers_are_refused_and_a_reader_is_not(path: Path) -> None:
 def test_the_hold_of_another_process_ends_with_its_death(path: Path) -> None:
     make_run(path)
     code = (
-        "import sys, time; from jaxleas.training.run_folder import RunFolder\n"
+        "import sys, time; from jaxleas.runs.folder import RunFolder\n"
         "run = RunFolder.open(sys.argv[1], writing=True); print('held', flush=True)\n"
         "time.sleep(60)"
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from jaxleas.training.metrics import MetricsLog, read_metrics
+from jaxleas.runs.metrics import MetricsLog, read_metrics
 from jaxleas.types.errors import InputError
 
 
@@ -48,7 +48,7 @@ def test_wall_time_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 def test_a_line_is_there_as_soon_as_it_is_appended(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from jaxleas.training.metrics import MetricsLog\n"
+        "import sys, time; from jaxleas.runs.metrics import MetricsLog\n"
         "log = MetricsLog(sys.argv[1]); log.append(5, {'a': 0.1}); print('x', flush=True)\n"
         "time.sleep(60)"
     )

@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from jaxleas.training.watching.watcher import Watcher
+from jaxleas.runs.watching.watcher import Watcher
 from jaxleas.types.errors import InputError
 
 # Name -> (the client it needs, its module here, its class). Nothing is imported before it is asked
@@ -47,4 +47,4 @@ def open_watchers(names: Sequence[str], folder: str | Path) -> dict[str, Watcher
 
 
 def _module(name: str) -> ModuleType:
-    return import_module(f"jaxleas.training.watching.{WATCHERS[name][1]}")
+    return import_module(f"jaxleas.runs.watching.{WATCHERS[name][1]}")

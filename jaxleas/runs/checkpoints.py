@@ -17,7 +17,7 @@ import numpy as np
 
 from jaxleas.files import atomic_path, parse_json, sweep_temporaries
 from jaxleas.files.npz import DamagedError, read_arrays
-from jaxleas.training.checkpoint_leaves import pack, unpack
+from jaxleas.runs.checkpoint_leaves import pack, unpack
 from jaxleas.types.errors import InputError
 
 FORMAT = 1

@@ -8,9 +8,9 @@ from types import ModuleType, SimpleNamespace
 
 import pytest
 
-from jaxleas.training.metrics import MetricsLog, read_metrics
-from jaxleas.training.watching import Audience, open_watchers, require_watchers
-from jaxleas.training.watching.mlflow_run import PARAMETERS_A_CALL
+from jaxleas.runs.metrics import MetricsLog, read_metrics
+from jaxleas.runs.watching import Audience, open_watchers, require_watchers
+from jaxleas.runs.watching.mlflow_run import PARAMETERS_A_CALL
 from jaxleas.types.errors import InputError
 
 CONFIG = {"seed": 0, "ppo": {"learning_rate": 1e-3, "hidden": [16, 16]}}
@@ -74,7 +74,7 @@ def test_a_watcher_that_fails_is_named_once_and_stops_nobody() -> None:
 
 
 def test_nobody_waits_for_a_watcher_that_hangs(monkeypatch) -> None:
-    monkeypatch.setattr("jaxleas.training.watching.audience.MOST_WAITING", 10)
+    monkeypatch.setattr("jaxleas.runs.watching.audience.MOST_WAITING", 10)
     stuck, said = Stuck(), []
     audience = Audience({"stuck": stuck}, said.append, farewell=0.2)
     begun = time.monotonic()
@@ -100,7 +100,7 @@ def test_nobody_waits_for_a_watcher_that_hangs(monkeypatch) -> None:
 )
 def test_watchers_hear_how_the_run_ended(tmp_path: Path, monkeypatch, error, status) -> None:
     notebook = Notebook()
-    monkeypatch.setattr("jaxleas.training.metrics.open_watchers", lambda *_: {"it": notebook})
+    monkeypatch.setattr("jaxleas.runs.metrics.open_watchers", lambda *_: {"it": notebook})
 
     def run() -> None:
         with MetricsLog(tmp_path / "a") as log:

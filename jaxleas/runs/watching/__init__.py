@@ -1,0 +1,7 @@
+"""Whoever watches a run: TensorBoard, Weights & Biases, MLflow, all told the same rows."""
+
+from jaxleas.runs.watching.audience import Audience
+from jaxleas.runs.watching.catalogue import WATCHERS, open_watchers, require_watchers
+from jaxleas.runs.watching.watcher import Status, Watcher
+
+__all__ = ["WATCHERS", "Audience", "Status", "Watcher", "open_watchers", "require_watchers"]
