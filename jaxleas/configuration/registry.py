@@ -1,0 +1,107 @@
+"""Plugs: what is built in, by name; what is the user's own, as MODULE:CLASS."""
+
+import difflib
+import sys
+from collections.abc import Callable, Collection, Iterator, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from jaxleas.types.errors import InputError
+
+Item = TypeVar("Item")
+
+
+class Registry(Generic[Item]):
+    """The one place where a kind of plug is named: its tasks, planners, conditions, ...
+
+        TASKS = Registry("task", {"steering": "jaxleas.envs.steering.task:Steering"})
+
+    A built-in item is imported when it is asked for, so that a list of names costs nothing and an
+    item may live in any room.
+
+    Attributes:
+        kind: what an item is, for messages: "task", "planner".
+        targets: the MODULE:NAME of each built-in item.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        targets: Mapping[str, str],
+        require: Callable[[str, Any], None] = lambda name, item: None,
+    ) -> None:
+        """Name the built-in items.
+
+        Args:
+            kind: what an item is.
+            targets: the MODULE:NAME of each built-in item.
+            require: called with name and item of the user's own; raises InputError where the item
+                is none of this kind.
+        """
+        self.kind = kind
+        self.targets = dict(targets)
+        self._require = require
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the names of the built-in items."""
+        return iter(self.targets)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether an item of this name is built in."""
+        return name in self.targets
+
+    def find(self, name: str, allow: Collection[str] = ()) -> Item:
+        """Return an item: a built-in one, or the user's own if its code may be run.
+
+        Args:
+            name: name of a built-in item, or MODULE:CLASS.
+            allow: each MODULE:CLASS that a person has named on a command line or in a call. A name
+                that comes from a file alone is never imported.
+
+        Raises:
+            InputError: there is no such item, its code may not be run, or it is of another kind.
+        """
+        if name in self.targets:
+            return load(self.targets[name], self.kind)
+        if not is_own(name):
+            raise InputError(f"there is no {self.kind} {name!r}{self.hint(name)}")
+        if name not in allow:
+            raise InputError(
+                f"the {self.kind} {name} is code: if you trust it, give --allow {name} on the"
+                " command line"
+            )
+        item = load(name, self.kind)
+        self._require(name, item)
+        return item
+
+    def hint(self, name: str) -> str:
+        """Return the end of a sentence about an unknown name: the nearest right one, and all."""
+        close = difflib.get_close_matches(name, self.targets, n=1)
+        meant = f"; perhaps you meant {close[0]}" if close else ""
+        return f"{meant}; there are {', '.join(self.targets)}, or MODULE:CLASS of your own"
+
+
+def is_own(name: str) -> bool:
+    """Whether a name is that of a class of the user's own, MODULE:CLASS."""
+    return ":" in name
+
+
+def load(target: str, kind: str) -> Any:
+    """Import MODULE:NAME; modules of the working folder are found, too.
+
+    This runs code: call it for names that a person gave, never for names from a file alone.
+
+    Raises:
+        InputError: there is no such module or name.
+    """
+    module, _, name = target.partition(":")
+    if (here := str(Path.cwd())) not in sys.path:
+        sys.path.append(here)
+    try:
+        return getattr(import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise InputError(
+            f"the {kind} {target} cannot be loaded: {error}; give MODULE:CLASS of a module in this"
+            " folder or one that is installed"
+        ) from error
