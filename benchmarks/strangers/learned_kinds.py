@@ -14,12 +14,13 @@ from jaxleas.envs.steering.layout import layout_named
 
 def learned_kinds(folder: Path) -> list[Kind]:
     from jaxleas.export.onnx_file import build_onnx
+    from jaxleas.export.write import described
     from jaxleas.guide.loading import load_policy
-    from jaxleas.guide.onnx_metadata import describe
     from jaxleas.runs.checkpoints import Checkpoints
     from jaxleas.surrogates import Identity, Surrogate, read_surrogate, write_surrogate
     from jaxleas.surrogates.network import Weights
-    from jaxleas.training.policy import SteeringPolicy, write_policy
+    from jaxleas.training.networks.mlp import Mlp, params_of
+    from jaxleas.training.policy import Policy, write_policy
 
     config = SteeringConfig(observation="icra81")
     size, generator = layout_named(config.observation).size, np.random.default_rng(0)
@@ -27,16 +28,16 @@ def learned_kinds(folder: Path) -> list[Kind]:
     def some(*shape: int) -> jax.Array:
         return jnp.asarray(generator.normal(size=shape), jnp.float32)
 
-    policy = SteeringPolicy(
+    policy = Policy(
         mean=some(size),
         deviation=jnp.ones(size),
-        kernels=(some(size, 6), some(6, 8)),
-        biases=(some(6), some(8)),
-        activation="relu",
+        params=params_of([(some(size, 6), some(6)), (some(6, 8), some(8))]),
+        network=Mlp(size, (6,), 8, "relu"),
+        signature=config.signature(),
         config=config,
     )
     write_policy(folder / "policy.npz", policy)
-    (folder / "policy.onnx").write_bytes(build_onnx(policy, describe(config)))
+    (folder / "policy.onnx").write_bytes(build_onnx(policy, described(config)))
     identity = Identity.of("sampling", {"keep_every": 5, "samples": 100}, config)
     inputs, code, hidden = identity.inputs, 5, 4
     weights = Weights(

@@ -1,7 +1,6 @@
 """Configurations and run folders."""
 
 import json
-from functools import partial
 from pathlib import Path
 
 import yaml
@@ -19,17 +18,17 @@ PROVENANCE = {
 
 
 def run_kinds(folder: Path) -> list[Kind]:
-    from jaxleas.configuration.loading import load_config, to_yaml
+    from jaxleas.configuration.loading import to_yaml
     from jaxleas.records import compare_runs, read_record
     from jaxleas.records.listing import as_json, table
     from jaxleas.runs.folder import RunFolder
     from jaxleas.runs.metrics import read_metrics
     from jaxleas.runs.watching.identity import lasting_identity
-    from jaxleas.training.config import RunConfig
+    from jaxleas.training.run_config import load_run_config, run_config_of
     from jaxleas.types import InputError
 
     config, base, metrics = (folder / n for n in ("config.yaml", "base.yaml", "metrics.jsonl"))
-    text = to_yaml(RunConfig())
+    text = to_yaml(run_config_of("steering")())
     # The generator's many numbers would be most of it, and reading them most of the time.
     config.write_text(text[: text.index("terrain:")] + text[text.index("network:") :])
     base.write_text(yaml.safe_dump({"ppo": {"steps": 1000}, "seed": 3}))
@@ -54,11 +53,10 @@ def run_kinds(folder: Path) -> list[Kind]:
     def identity(path: Path) -> None:
         lasting_identity(path, lambda: "another")
 
-    run_config = partial(load_config, RunConfig)
     provenance = folder / "provenance.json"
     return [
-        kind_of("configuration", config, run_config, m.mutate_yaml),
-        kind_of("extending", folder / "extending.yaml", run_config, m.mutate_yaml, base),
+        kind_of("configuration", config, load_run_config, m.mutate_yaml),
+        kind_of("extending", folder / "extending.yaml", load_run_config, m.mutate_yaml, base),
         kind_of("metrics", metrics, read_metrics, m.mutate_lines),
         kind_of("run folder", provenance, opened, m.mutate_json, config),
         kind_of("listed run", provenance, listed, m.mutate_json, config, metrics),

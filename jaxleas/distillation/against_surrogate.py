@@ -18,7 +18,7 @@ from jaxleas.surrogates import (
     require_fit,
     write_surrogate,
 )
-from jaxleas.training.policy import SteeringPolicy, read_policy
+from jaxleas.training.policy import Policy, read_policy
 
 
 class AgainstSurrogate:
@@ -50,9 +50,7 @@ class AgainstSurrogate:
         policy, report = read_policy(folder.policy), surrogate.report
         return Practised(policy, learned, labelled["guides"], seconds, report)
 
-    def _label(
-        self, number: int, folder: RoundFolder, policy: SteeringPolicy, say: Say
-    ) -> dict[str, Any]:
+    def _label(self, number: int, folder: RoundFolder, policy: Policy, say: Say) -> dict[str, Any]:
         place = self.place
         if not folder.labelled.is_file():
             label_round(

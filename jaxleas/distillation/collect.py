@@ -11,9 +11,9 @@ from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.world import World
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import GuidePath, RootMotion
 
 HOLD = 10  # steps for which a disturbance lasts: one of a step's length would average out
@@ -60,7 +60,7 @@ class Walks:
 def collect(
     env: SteeringEnv,
     world: World,
-    policy: SteeringPolicy,
+    policy: Policy,
     key: Key[Array, ""],
     count: int,
     steps: int,
@@ -91,13 +91,13 @@ def _walk(
     env: SteeringEnv,
     steps: int,
     world: World,
-    policy: SteeringPolicy,
+    policy: Policy,
     key: Array,
     scale: Float[Array, " N"],
 ) -> tuple[RootMotion, Array, Array]:
     pool_key, take_key, noise_key = jax.random.split(key, 3)
     count = len(scale)
-    episode, observation = take(draw_starts(env, world, pool_key, 2 * count), take_key, count)
+    episode, observation = begin(env, world, (pool_key, take_key), count, of=2 * count)
     weights = RewardParams.of(env.config.reward)
     shape = (-(-steps // HOLD), count, env.action_size)
     noise = jnp.repeat(jax.random.normal(noise_key, shape), HOLD, axis=0)[:steps]

@@ -11,12 +11,13 @@ from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.distillation.collect import Walks
+from jaxleas.distillation.config import SteeringRun
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.reward import RewardParams
+from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.world import World
-from jaxleas.training.config import RunConfig
-from jaxleas.training.loss import action_distribution
-from jaxleas.training.networks import dense, normalise
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
 
@@ -58,12 +59,13 @@ class Episodes:
         return len(self.steps)
 
 
-def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
+def make_walk(config: SteeringRun, env: SteeringEnv, networks: ActorCritic, robots: int) -> Walk:
     """Return the walk: fresh starts, then one whole episode each. It is pure; jit it.
 
     Args:
         config: of the run.
         env: the task; its condition ends an episode, the exact planner is asked later.
+        networks: actor and critic.
         robots: that walk at once.
 
     Returns:
@@ -73,26 +75,24 @@ def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
 
     def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
         pool_key, take_key, noise_key = jax.random.split(key, 3)
-        pool = draw_starts(env, world, pool_key, 2 * robots)
-        episode, observation = take(pool, take_key, robots)
+        episode, observation = begin(env, world, (pool_key, take_key), robots, of=2 * robots)
         progress = state.update.astype(jnp.float32) / config.ppo.updates
-        weights = numbers.reward_weights(progress)
+        weights = RewardParams.at(numbers.task, progress)
         noise = jax.random.normal(noise_key, (steps, robots, env.action_size))
 
         def advance(carry, noise_now):
             episode, observation, walking = carry
             normalised = normalise(observation, state.normaliser)
-            location, deviation = action_distribution(
-                dense(state.params.policy, normalised, config.network)
-            )
-            raw_action = location + deviation * noise_now
+            logits = networks.answer(state.params.policy, normalised)
+            (distribution,) = networks.signature.distributions(logits)
+            raw_action = networks.signature.sample((distribution,), (noise_now,))
             after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))
             terminated = walking & outcome.terminated
             record = {
                 "observation": observation,
                 "raw_action": raw_action,
-                "location": location,
-                "deviation": deviation,
+                "location": distribution.location,
+                "deviation": distribution.deviation,
                 "reward": outcome.reward,
                 "terminated": terminated,
                 "reached": walking & outcome.reached,

@@ -11,7 +11,7 @@ from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide.leas import leas
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import InputError
 
 VERSION = 1
@@ -19,7 +19,7 @@ VERSION = 1
 
 def judge_round(
     file: Path,
-    policy: SteeringPolicy,
+    policy: Policy,
     method: str,
     planner: str,
     judge: Planner,

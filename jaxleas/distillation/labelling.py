@@ -18,7 +18,7 @@ from jaxleas.guide.files import Reason, write_guide_paths
 from jaxleas.labels import PlannerSettings, Workers, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.scene import Scene, write_scene
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Ground:
 def label_round(
     folder: RoundFolder,
     ground: Ground,
-    policy: SteeringPolicy,
+    policy: Policy,
     surrogate: Surrogate | None,
     planner: str,
     settings: PlannerSettings,
@@ -99,7 +99,7 @@ def label_round(
 
 def _walk(
     ground: Ground,
-    policy: SteeringPolicy,
+    policy: Policy,
     surrogate: Surrogate | None,
     config: CollectConfig,
     seed: int,

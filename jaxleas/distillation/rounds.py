@@ -10,7 +10,7 @@ from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds, write_rounds
 from jaxleas.files import atomic_path
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.training.train_state import Learned
 
 Say = Callable[[str], None]
@@ -28,7 +28,7 @@ class Practised:
         surrogate: what its fit measured; None where there is none.
     """
 
-    policy: SteeringPolicy
+    policy: Policy
     learned: Learned
     labels: int = 0
     seconds: dict[str, float] = field(default_factory=dict)

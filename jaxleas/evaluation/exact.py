@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -13,8 +14,10 @@ from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.guide.leas import leas
+from jaxleas.guide.loading import load_policy
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.labels import Verdict
+from jaxleas.labels import Judge, Verdict
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
@@ -170,6 +173,25 @@ def judge_exact(
                     on_result(result)
                 results.append(result)
     return results
+
+
+def exact_success(policy: Path, judge: Judge, suites: Sequence[Suite]) -> float:
+    """Return the mean share of starts that reach their goal with contacts all the way.
+
+    Args:
+        policy: file of a steering policy.
+        judge: exact planner.
+        suites: suites to be walked.
+    """
+    found = load_policy(policy)
+    env = SteeringEnv(found.config)
+    walkers = {"policy": walker(env, leas(env, found))}
+    shares = [
+        cell.planned or 0.0
+        for suite in suites
+        for cell in judge_exact(env, walkers, suite, {judge.planner: judge})
+    ]
+    return sum(shares) / len(shares)
 
 
 def result_key(result: CellResult) -> ResultKey:

@@ -68,3 +68,10 @@ def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     wrapped = angle - 2 * jnp.pi * jnp.floor((angle + jnp.pi) / (2 * jnp.pi))
     # Rounding may leave it just outside, on either side.
     return jnp.where(wrapped >= jnp.pi, -jnp.pi, jnp.maximum(wrapped, -jnp.pi))
+
+
+def bound_norm(vector: Float[Array, "*batch 3"], limit: float) -> Float[Array, "*batch 3"]:
+    """Shorten vectors that are longer than `limit`; leave the others alone."""
+    square = squared_length(vector)[..., None]
+    # rsqrt of at least limit^2: no division by zero, no branch, finite derivatives at zero.
+    return vector * (limit / jnp.sqrt(jnp.maximum(square, limit * limit)))

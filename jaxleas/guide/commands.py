@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
     from jaxleas.terrain.height_map import HeightMap
-    from jaxleas.training.policy import SteeringPolicy
+    from jaxleas.training.policy import Policy
     from jaxleas.types import Query
 
 Steering = Literal["leas", "kino", "lin"]
@@ -98,7 +98,7 @@ def rollout(
 
 
 def steering_named(
-    steering: Steering, env: "SteeringEnv", policy: "SteeringPolicy | OnnxPolicy | None"
+    steering: Steering, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
 ) -> "SteeringMethod":
     """Return the steering method of that name, as fast as its task says; LEAS needs a policy."""
     from jaxleas.guide.leas import leas

@@ -13,7 +13,7 @@ from jaxleas.guide.leas import leas
 from jaxleas.guide.onnx_policy import OnnxPolicy
 from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import Atlas
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import RootMotion
 
 State = Literal["waiting", "walking", "arrived", "invalid"]
@@ -49,7 +49,7 @@ class Walker:
     """
 
     def __init__(
-        self, name: str, env: SteeringEnv, policy: SteeringPolicy | OnnxPolicy, atlas: Atlas
+        self, name: str, env: SteeringEnv, policy: Policy | OnnxPolicy, atlas: Atlas
     ) -> None:
         """Compile the step.
 

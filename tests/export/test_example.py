@@ -13,8 +13,8 @@ import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
+from jaxleas.export.write import described
 from jaxleas.guide import leas, roll_out
-from jaxleas.guide.onnx_metadata import describe
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
 from tests.guide.walkers import flat_map, random_policy, standing, waypoints_at
@@ -26,7 +26,7 @@ POLICY = random_policy(seed=4)
 @pytest.fixture
 def policy_file(tmp_path):
     file = tmp_path / "policy.onnx"
-    file.write_bytes(build_onnx(POLICY, describe(POLICY.config)))
+    file.write_bytes(build_onnx(POLICY, described(POLICY.config)))
     return file
 
 

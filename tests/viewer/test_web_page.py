@@ -15,21 +15,21 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.motion import integrate
 from jaxleas.export import build_onnx, web_runtime
 from jaxleas.export.commands import export
-from jaxleas.export.web_page import page_description, write_page
-from jaxleas.export.web_runtime import RUNTIME_FILES, kept_runtime, runtime_folder
+from jaxleas.export.write import described
 from jaxleas.guide.commands import walk_queries
 from jaxleas.guide.leas import leas
-from jaxleas.guide.onnx_metadata import describe
 from jaxleas.guide.standing import Pose
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError, Query, RootMotion
+from jaxleas.viewer.web_page import page_description, write_page
+from jaxleas.viewer.web_runtime import RUNTIME_FILES, kept_runtime, runtime_folder
 from tests.browser import chromium, served
 from tests.guide.walkers import flat_map, random_policy, small_arena
 
 POLICY = random_policy(seed=4)
 ENV = SteeringEnv(POLICY.config)
-ONNX = build_onnx(POLICY, describe(POLICY.config))
+ONNX = build_onnx(POLICY, described(POLICY.config))
 STEPS = 200
 
 REPLAY = """

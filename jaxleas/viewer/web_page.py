@@ -1,6 +1,5 @@
 """A page on which an exported policy walks by itself: static files, for any web host."""
 
-import json
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -8,19 +7,32 @@ from typing import Any
 import numpy as np
 
 from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.description import describe_steering
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import layout_named
-from jaxleas.export.web_runtime import RUNTIME_FILES, runtime_folder
 from jaxleas.files import write_bytes, write_json
-from jaxleas.guide.onnx_metadata import describe
+from jaxleas.guide.onnx_policy import read_onnx_policy
 from jaxleas.guide.standing import Pose, choose_start, require_start
 from jaxleas.robots import Robot
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError
+from jaxleas.viewer.web_runtime import RUNTIME_FILES, runtime_folder
 
 SOURCES = ("walk.js", "page.js", "page.css", "index.html")
 MOST_CELLS = 4_000_000
 """A visitor downloads four bytes a cell."""
+
+
+def page_of(
+    folder: Path,
+    file: Path,
+    terrain: HeightMap,
+    start: tuple[float, float, float] | None,
+    runtime: Path | None,
+) -> None:
+    """Write the page of an ONNX file (`write_page`)."""
+    config = read_onnx_policy(file).config
+    write_page(folder, file.read_bytes(), config, terrain, start, runtime)
 
 
 def write_page(
@@ -65,14 +77,14 @@ def write_page(
     write_bytes(folder / "heights.bin", terrain.heights.astype("<f4").tobytes())
     write_json(folder / "page.json", page_description(config, env.robot, terrain, pose))
     for name in SOURCES:  # index.html last: a page that can be opened is whole
-        write_bytes(folder / name, (resources.files("jaxleas.export") / "page" / name).read_bytes())
+        write_bytes(folder / name, (resources.files("jaxleas.viewer") / "page" / name).read_bytes())
 
 
 def page_description(
     config: SteeringConfig, robot: Robot, terrain: HeightMap, start: Pose
 ) -> dict[str, Any]:
     """Return what the page's scripts must know, as `page.json` holds it."""
-    stated = {key: json.loads(text) for key, text in describe(config).items()}
+    stated = describe_steering(config)
     low = np.min([box.low for box in robot.trunk], axis=0)
     high = np.max([box.high for box in robot.trunk], axis=0)
     rows, columns = terrain.shape
