@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, JsonValue, field_validator, model_va
 from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Whole
 from jaxleas.configuration.strict import Strict
 from jaxleas.evaluation.recipes import RECIPES
-from jaxleas.surrogates.fit import FitSettings
+from jaxleas.surrogates.settings import FitSettings
 from jaxleas.training.config import RunConfig, TerrainConfig
 
 Observation = Literal["thesis144", "thesis145", "icra81"]
