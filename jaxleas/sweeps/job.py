@@ -13,8 +13,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.files import parse_json, read_typed, typed, write_json
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.files import InUseError, parse_json, read_typed, typed, write_json
+from jaxleas.types.errors import JaxleasError
 
 LIFELINE = "--lifeline"
 STOP = "stop"  # a file beside the run folder: the trial is pruned
@@ -215,8 +215,8 @@ def patiently(function: Callable[[Any], None], path: str | Path, seconds: float 
     while True:
         try:
             return function(path)
-        except InputError as error:
-            if "is in use by" not in str(error) or time.monotonic() > until:
+        except InUseError:
+            if time.monotonic() > until:
                 raise
             time.sleep(0.5)
 
