@@ -63,7 +63,9 @@ class AgainstSurrogate:
                 place.config.collect,
                 place.config.seed + number,
                 place.workers,
-                lambda done, total: say(f"round {number}: {done} of {total} guide paths judged"),
+                lambda done, total: say(
+                    f"round {number}: {done} of {total} guide paths judged", passing=True
+                ),
             )
         return read_done(folder.labelled, "guides", "seconds")
 
@@ -82,7 +84,9 @@ class AgainstSurrogate:
             place.env,
             place.identity,
             place.config.fit,
-            lambda epoch, loss: say(f"round {number}: fit, epoch {epoch}: {loss:.5f} nats"),
+            lambda epoch, loss: say(
+                f"round {number}: fit, epoch {epoch}: {loss:.5f} nats", passing=True
+            ),
         )
         write_surrogate(folder.surrogate, surrogate)
         return surrogate

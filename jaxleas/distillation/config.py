@@ -10,7 +10,7 @@ from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Who
 from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
 from jaxleas.evaluation.recipes import RECIPES
-from jaxleas.surrogates.fit import FitSettings
+from jaxleas.surrogates.settings import FitSettings
 from jaxleas.training.config import RunConfig
 
 SteeringRun = RunConfig[SteeringConfig, TerrainConfig]

@@ -1,7 +1,7 @@
 """The rounds of a distillation: what each leaves, and the table of them all."""
 
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -13,7 +13,18 @@ from jaxleas.files import atomic_path
 from jaxleas.training.policy import Policy
 from jaxleas.training.train_state import Learned
 
-Say = Callable[[str], None]
+
+class Say(Protocol):
+    """Shows what is done now."""
+
+    def __call__(self, words: str, *, passing: bool = False) -> None:
+        """Show a sentence.
+
+        Args:
+            words: sentence to show.
+            passing: whether it is one of many in a row, of which some may be left out.
+        """
+        ...
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,6 @@
 """One run as its folder tells it, however far it came and whatever became of it."""
 
-import fcntl
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +11,7 @@ from jaxleas.configuration.yaml_text import read_mapping
 from jaxleas.envs.registry import DEFAULT_TASK, TASKS
 from jaxleas.evaluation.examination import BASELINES
 from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
-from jaxleas.files import read_json
+from jaxleas.files import is_held, read_json
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.config import RunConfig
 from jaxleas.training.run_config import run_config_of
@@ -101,7 +99,7 @@ def read_record(path: str | Path) -> RunRecord:
     done = found.get("steps", 0) >= (found.get("total") or float("inf"))
     finished = done and (path / "policy.npz").is_file()
     # Asked only of those that may be at work: asking holds the lock for a moment.
-    state: State = "finished" if finished else "running" if _is_held(path) else "interrupted"
+    state: State = "finished" if finished else "running" if is_held(path) else "interrupted"
     if problems and state != "running":  # one that begins just now is not whole yet
         state = "damaged"
     return RunRecord(path, state, problem=problems[0] if problems else "", **found)
@@ -194,20 +192,3 @@ def _evaluations(path: Path) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     """Return YAML values as JSON has them: a date, say, becomes text."""
     return json.loads(json.dumps(value, default=str))
-
-
-def _is_held(path: Path) -> bool:
-    """Whether a process holds the folder for writing."""
-    try:
-        descriptor = os.open(path / "lock", os.O_RDONLY)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:  # a file system without locks
-        return False
-    finally:
-        os.close(descriptor)
-    return False

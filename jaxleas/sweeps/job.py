@@ -15,8 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.files import parse_json, read_typed, typed, write_json
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.files import InUseError, parse_json, read_typed, typed, write_json
+from jaxleas.types.errors import JaxleasError
 
 LIFELINE = "--lifeline"
 ALLOW = "--allow"
@@ -227,8 +227,8 @@ def patiently(function: Callable[[Any], None], path: str | Path, seconds: float 
     while True:
         try:
             return function(path)
-        except InputError as error:
-            if "is in use by" not in str(error) or time.monotonic() > until:
+        except InUseError:
+            if time.monotonic() > until:
                 raise
             time.sleep(0.5)
 

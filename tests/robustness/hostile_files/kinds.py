@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.mutations import Mutation
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.mutations import Mutation
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from benchmarks.strangers import binary_mutations as b
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.kinds import Kind, kind_of
 from jaxleas.terrain import Scene, write_height_map, write_scene
 from jaxleas.terrain.rasterise import rasterise
+from tests.robustness.hostile_files import binary_mutations as b
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 
 def floor() -> Scene:

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from benchmarks.kills.killing import differences
+from tests.robustness.kills.killing import differences
 from tests.training.runs import ROOT, environment
 
 

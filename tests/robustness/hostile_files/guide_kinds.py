@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.strangers import binary_mutations as b
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.kinds import Kind, kind_of
+from tests.robustness.hostile_files import binary_mutations as b
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 
 def guide_kinds(folder: Path) -> list[Kind]:

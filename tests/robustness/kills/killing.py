@@ -8,11 +8,11 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from benchmarks.kills.moments import cut_power, draw_moment, signal_of
-from benchmarks.kills.training import UPDATES, Training, content, write_config
 from jaxleas.files.npz import DamagedError
 from jaxleas.runs.folder import RunFolder
 from jaxleas.types import InputError
+from tests.robustness.kills.moments import cut_power, draw_moment, signal_of
+from tests.robustness.kills.training import UPDATES, Training, content, write_config
 
 INTERRUPTED = 130
 

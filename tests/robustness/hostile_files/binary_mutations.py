@@ -10,7 +10,7 @@ import zlib
 
 import numpy as np
 
-from benchmarks.strangers.mutations import mutate_bytes, mutate_json, mutate_value
+from tests.robustness.hostile_files.mutations import mutate_bytes, mutate_json, mutate_value
 
 
 def mutate_npz(draw: random.Random, whole: bytes) -> bytes:

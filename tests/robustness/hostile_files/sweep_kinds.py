@@ -5,8 +5,8 @@ from pathlib import Path
 
 import yaml
 
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.kinds import Kind, kind_of
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 SEARCH = {
     "config": "base.yaml",

@@ -6,10 +6,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from benchmarks.strangers import binary_mutations as b
-from benchmarks.strangers.kinds import Kind, kind_of
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import layout_named
+from tests.robustness.hostile_files import binary_mutations as b
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 
 def learned_kinds(folder: Path) -> list[Kind]:

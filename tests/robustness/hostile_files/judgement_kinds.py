@@ -4,8 +4,8 @@ import json
 from functools import partial
 from pathlib import Path
 
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.kinds import Kind, kind_of
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 _PART = {
     **{"count": 30, "failed": 3, "balanced_accuracy": 0.8, "area_under_curve": 0.9},

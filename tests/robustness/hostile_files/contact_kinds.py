@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.strangers import mutations as m
-from benchmarks.strangers.kinds import Kind, kind_of
+from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 
 def contact_kinds(folder: Path) -> list[Kind]:
@@ -50,7 +50,7 @@ def contact_kinds(folder: Path) -> list[Kind]:
     )
     write_plan(folder / "plan.json", plan)
     asked = folder / "problem.json"
-    data = Path(__file__).resolve().parents[2] / "jaxleas" / "robots" / "data"
+    data = Path(__file__).resolve().parents[3] / "jaxleas" / "robots" / "data"
 
     def plan_read(path: Path) -> None:
         read_plan(path)

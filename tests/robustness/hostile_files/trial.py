@@ -15,9 +15,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks.strangers.corpus import make_corpus
-from benchmarks.strangers.kinds import Kind
 from jaxleas.types import JaxleasError
+from tests.robustness.hostile_files.corpus import make_corpus
+from tests.robustness.hostile_files.kinds import Kind
 
 MOST_SECONDS = 20.0  # of processor time: a crowded machine is no reader's fault
 MOST_MEMORY = 6 * 2**30  # of address space beyond what the process has at the start
