@@ -14,7 +14,7 @@ from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
 from jaxleas.training.policy import SteeringPolicy
-from jaxleas.types import GuidePath, RootMotion
+from jaxleas.types import GuidePath, RootMotion, cut_walks
 
 HOLD = 10  # steps for which a disturbance lasts: one of a step's length would average out
 
@@ -44,17 +44,7 @@ class Walks:
 
     def paths(self, time_step: float) -> list[GuidePath]:
         """Return each walk as a guide path, cut before its first invalid configuration."""
-        lengths = self.valid.sum(axis=1)
-        return [
-            GuidePath(
-                time=np.arange(length) * time_step,
-                position=self.motion.position[robot, :length],  # type: ignore[arg-type]
-                yaw=self.motion.yaw[robot, :length],  # type: ignore[arg-type]
-                velocity=self.motion.velocity[robot, :length],  # type: ignore[arg-type]
-                valid=np.ones(length, dtype=bool),
-            )
-            for robot, length in enumerate(lengths)
-        ]
+        return cut_walks(self.motion, self.valid, self.valid.sum(axis=1), time_step)
 
 
 def collect(

@@ -51,14 +51,7 @@ class Walk:
 
     def guide_path(self, index: int, time_step: float) -> GuidePath:
         """Return one roll-out up to its end, with `time_step` [s] between configurations."""
-        until = self.end[index] + 1
-        return GuidePath(
-            time=np.arange(until) * time_step,
-            position=self.position[index, :until],
-            yaw=self.yaw[index, :until],
-            velocity=self.velocity[index, :until],
-            valid=self.valid[index, :until],
-        )
+        return GuidePath.of_walk(self, self.valid, index, time_step)[: self.end[index] + 1]
 
 
 def walk(

@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.terrain.atlas import Atlas
-from jaxleas.types import GuidePath, InputError, RootMotion
+from jaxleas.types import GuidePath, InputError, RootMotion, cut_walks
 
 
 @struct.dataclass
@@ -247,16 +247,7 @@ def paths(rollout: RollOut, time_step: float) -> list[GuidePath]:
         time_step: between two configurations [s].
     """
     host = jax.tree.map(np.asarray, rollout)
-    return [
-        GuidePath(
-            time=np.arange(end + 1) * time_step,
-            position=host.position[robot, : end + 1],
-            yaw=host.yaw[robot, : end + 1],
-            velocity=host.velocity[robot, : end + 1],
-            valid=host.valid[robot, : end + 1],
-        )
-        for robot, end in enumerate(host.end)
-    ]
+    return cut_walks(host, host.valid, host.end + 1, time_step)
 
 
 def _like(flag: Array, leaf: Array) -> Array:

@@ -7,13 +7,13 @@ no JAX.
 from typing import TYPE_CHECKING, Any
 
 from jaxleas.types.errors import InputError, JaxleasError
-from jaxleas.types.paths import GuidePath
+from jaxleas.types.paths import GuidePath, cut_walks
 from jaxleas.types.queries import Query
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
-__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion"]
+__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion", "cut_walks"]
 
 
 def __getattr__(name: str) -> Any:
