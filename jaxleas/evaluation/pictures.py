@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.evaluation.judge import Walk
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.robots import Robot
 from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
 from jaxleas.terrain.height_map import HeightMap
@@ -137,7 +138,7 @@ def arrow_indices(
 ) -> Int[np.ndarray, " K"]:
     """Return where along a path arrows show its heading: evenly by distance and by turning."""
     moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1) / ARROW_SPACING
-    turned = np.abs((np.diff(yaw) + np.pi) % (2.0 * np.pi) - np.pi) / ARROW_TURN
+    turned = np.abs(wrap_angle_on_host(np.diff(yaw))) / ARROW_TURN
     travelled = np.concatenate([[0.0], np.cumsum(moved + turned)])
     spacing = max(1.0, travelled[-1] / MOST_ARROWS)
     wanted = np.arange(0.0, travelled[-1] + 1e-9, spacing)

@@ -13,6 +13,7 @@ from jaxtyping import Float, Int
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.suites import Cell
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.terrain.atlas import VOID, Atlas, make_atlas
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.rasterise import rasterise
@@ -106,7 +107,7 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
             grounds.atlas,
             map_index,
             jnp.asarray(horizontal, dtype=jnp.float32),
-            jnp.asarray(_wrap(ahead + aside), dtype=jnp.float32),
+            jnp.asarray(wrap_angle_on_host(ahead + aside), dtype=jnp.float32),
             jnp.float32(cell.speed),
         )
         valid = np.asarray(judged)
@@ -148,10 +149,6 @@ def crossing_direction(scenario: Scenario) -> float:
 
 def _centre(area: Sequence[float]) -> Float[np.ndarray, " 2"]:
     return np.array(area, dtype=np.float64).reshape(2, 2).mean(axis=1)
-
-
-def _wrap(angle: Float[np.ndarray, " N"]) -> Float[np.ndarray, " N"]:
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def _waypoints(

@@ -122,6 +122,7 @@ def walk_queries(
     """Return the roll-out of queries on one height map."""
     import jax.numpy as jnp
 
+    from jaxleas.geometry.rotations import wrap_angle_on_host
     from jaxleas.guide.rollout import roll_out
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.types import RootMotion
@@ -130,7 +131,7 @@ def walk_queries(
     start = RootMotion(
         position=jnp.asarray([query.position for query in queries], jnp.float32),
         velocity=jnp.asarray([query.velocity for query in queries], jnp.float32),
-        yaw=jnp.asarray((yaw + np.pi) % (2 * np.pi) - np.pi, jnp.float32),
+        yaw=jnp.asarray(wrap_angle_on_host(yaw), jnp.float32),
     )
     # The height wanted at the goal: walking height; over the void, that of the start.
     goals = np.array([query.goal for query in queries])

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 
 from jaxleas.conditions import collision, strict_reachability
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError, RootMotion
@@ -65,7 +66,7 @@ class Places:
         height = self.root_height(places)
         height = np.where(np.isnan(height), self.env.robot.walking_height, height)
         position = np.column_stack([places, height]).astype(np.float32)
-        wrapped = (np.asarray(yaw) + np.pi) % (2.0 * np.pi) - np.pi
+        wrapped = wrap_angle_on_host(yaw)
         return on_host(position, np.zeros_like(position), wrapped.astype(np.float32))
 
     def margins(
@@ -189,7 +190,7 @@ class Places:
             valid = self.valid(np.repeat(some, len(turn), axis=0), headings)
             if valid.any():
                 index = int(np.argmax(valid))
-                heading = (headings[index] + np.pi) % (2.0 * np.pi) - np.pi
+                heading = wrap_angle_on_host(headings[index])
                 at = some[index // len(turn)]
                 return (float(at[0]), float(at[1])), float(heading)
         return None
