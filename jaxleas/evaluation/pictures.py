@@ -12,6 +12,7 @@ from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.robots import Robot
 from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import is_ground
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -191,7 +192,7 @@ def draw_profile(
     height = ground.height_at(np.column_stack([x, y])).astype(np.float64)
     distance = fine
     floor = float(np.nanmin(height)) - 0.25
-    solid = np.where(np.isnan(height), floor, height)
+    solid = np.where(is_ground(height), height, floor)
 
     ax.fill_between(distance, floor, solid, color="0.55", linewidth=0, label="ground")
     ax.fill_between(

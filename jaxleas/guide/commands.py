@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.types import InputError
+from jaxleas.types import InputError, is_ground
 
 if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
@@ -136,7 +136,7 @@ def walk_queries(
     # The height wanted at the goal: walking height; over the void, that of the start.
     goals = np.array([query.goal for query in queries])
     height = terrain.height_at(goals) + env.robot.walking_height
-    height = np.where(np.isnan(height), [query.position[2] for query in queries], height)
+    height = np.where(is_ground(height), height, [query.position[2] for query in queries])
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
     return roll_out(
         env,

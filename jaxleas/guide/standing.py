@@ -13,7 +13,7 @@ from jaxleas.conditions import collision, strict_reachability
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion
+from jaxleas.types import InputError, RootMotion, is_ground
 
 MOST_PLACES = 5_000
 SPACING = 0.25  # between places that are tried [m]; wider on maps that are larger
@@ -80,7 +80,7 @@ def require_start(env: SteeringEnv, terrain: HeightMap, start: tuple[float, floa
         return _stand(env, terrain, place, yaw)
     where = f"--start {x:g} {y:g} {degrees:g}"
     ground = terrain.height_at(place[None])[0]
-    if np.isnan(ground):
+    if not is_ground(ground):
         problem = "there is no ground there"
     else:
         motion = _standing(env, terrain, place[None], yaw)
@@ -123,7 +123,7 @@ def _valid(
 ) -> Bool[np.ndarray, " N"]:
     margin = _margin(env, make_atlas([terrain]), _standing(env, terrain, places, yaw))
     # A root measured from the void would see the void at walking height and pass for valid.
-    return (np.asarray(margin) >= 0.0) & ~np.isnan(terrain.height_at(places))
+    return (np.asarray(margin) >= 0.0) & is_ground(terrain.height_at(places))
 
 
 @partial(jax.jit, static_argnames="env")

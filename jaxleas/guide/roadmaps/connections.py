@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.guide.roadmaps.places import Places, on_host
 from jaxleas.guide.rollout import RollOut, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.types import GuidePath, RootMotion
+from jaxleas.types import GuidePath, RootMotion, is_ground
 
 BATCH = 64
 """Connections walked in one compiled call: fewer leave the vector units idle."""
@@ -105,7 +105,7 @@ class Connector:
 
     def _lifted(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N 3"]:
         height = self.places.root_height(places)
-        height = np.where(np.isnan(height), self.places.env.robot.walking_height, height)
+        height = np.where(is_ground(height), height, self.places.env.robot.walking_height)
         return np.column_stack([places, height]).astype(np.float32)
 
 

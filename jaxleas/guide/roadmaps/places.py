@@ -13,7 +13,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion
+from jaxleas.types import InputError, RootMotion, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
 """A place is one to stand at if any of these headings is valid there [rad]."""
@@ -64,7 +64,7 @@ class Places:
     ) -> RootMotion:
         """Return roots at rest at walking height; where there is no ground, at that over z = 0."""
         height = self.root_height(places)
-        height = np.where(np.isnan(height), self.env.robot.walking_height, height)
+        height = np.where(is_ground(height), height, self.env.robot.walking_height)
         position = np.column_stack([places, height]).astype(np.float32)
         wrapped = wrap_angle_on_host(yaw)
         return on_host(position, np.zeros_like(position), wrapped.astype(np.float32))
@@ -88,7 +88,7 @@ class Places:
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
         margin = self.margins(places, yaw)["the condition"]
-        return np.logical_and(margin >= 0.0, ~np.isnan(self.root_height(places)))
+        return np.logical_and(margin >= 0.0, is_ground(self.root_height(places)))
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
@@ -151,7 +151,7 @@ class Places:
             reason = (
                 f"off the map, which spans x {x_min:g} to {x_max:g}, y {y_min:g} to {y_max:g} m"
             )
-        elif np.isnan(self.root_height(here)[0]):
+        elif not is_ground(self.root_height(here)[0]):
             reason = "there is no ground"
         else:
             margins = self.margins(np.repeat(here, len(headings), axis=0), headings)
