@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.guide.roadmaps.places import Places, on_host
+from jaxleas.guide.places import Places, on_host
 from jaxleas.guide.rollout import RollOut, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath, RootMotion, is_ground

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.guide.files import Reason
+from jaxleas.guide.places import on_host
 from jaxleas.guide.roadmaps.budget import Budget
 from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.ledger import Key, Ledger, key_of
-from jaxleas.guide.roadmaps.places import on_host
 from jaxleas.guide.roadmaps.samples import Samples
 from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
 from jaxleas.types import GuidePath, RootMotion
