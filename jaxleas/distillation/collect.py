@@ -9,9 +9,9 @@ import numpy as np
 from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
+from jaxleas.distillation.walking import before_first, walk_from_starts
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
 from jaxleas.training.policy import SteeringPolicy
 from jaxleas.types import GuidePath, RootMotion, cut_walks
@@ -85,25 +85,16 @@ def _walk(
     key: Array,
     scale: Float[Array, " N"],
 ) -> tuple[RootMotion, Array, Array]:
-    pool_key, take_key, noise_key = jax.random.split(key, 3)
-    count = len(scale)
-    episode, observation = take(draw_starts(env, world, pool_key, 2 * count), take_key, count)
-    weights = RewardParams.of(env.config.reward)
-    shape = (-(-steps // HOLD), count, env.action_size)
+    *start_keys, noise_key = jax.random.split(key, 3)
+    shape = (-(-steps // HOLD), len(scale), env.action_size)
     noise = jnp.repeat(jax.random.normal(noise_key, shape), HOLD, axis=0)[:steps]
 
-    def advance(carry, push):
-        episode, observation, valid = carry
-        action = jnp.clip(policy.action(observation) + scale[:, None] * push, -1.0, 1.0)
-        episode, outcome = env.step(world.atlas, weights, episode, action)
-        valid &= ~outcome.terminated
-        return (episode, outcome.observation, valid), (episode.motion, valid)
+    def act(observation: Array, push: Array) -> tuple[Array, None]:
+        action = policy.action(observation) + scale[:, None] * push
+        return jnp.clip(action, -1.0, 1.0), None
 
-    everyone = jnp.ones(count, dtype=bool)
-    _, record = jax.lax.scan(advance, (episode, observation, everyone), noise)
-    whole = jax.tree.map(
-        lambda first, later: jnp.swapaxes(jnp.concatenate([first[None], later]), 0, 1),
-        (episode.motion, everyone),
-        record,
-    )
-    return *whole, episode.plan.map_index
+    weights = RewardParams.of(env.config.reward)
+    walked = walk_from_starts(env, world, (start_keys[0], start_keys[1]), weights, act, noise)
+    valid = before_first(walked.terminated) & ~walked.terminated
+    valid = jnp.pad(valid, ((0, 0), (1, 0)), constant_values=True)
+    return walked.motion, valid, walked.map_index

@@ -18,7 +18,6 @@ from jaxleas.guide.leas import Leas
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
 from jaxleas.guide.rollout import roll_out
 from jaxleas.training.policy import SteeringPolicy
-from jaxleas.types import RootMotion
 
 TOLERANCE = 1e-5  # [m/s^2] and [rad/s]
 LEAST_OBSERVATIONS = 10_000
@@ -66,12 +65,11 @@ def _record_round(
     walked = roll_out(
         env, world.atlas, map_index, Leas(policy, env), episode.motion, waypoints, steps
     )
-    motion = RootMotion(position=walked.position, velocity=walked.velocity, yaw=walked.yaw)
     heights = env.local_heights(
-        world.atlas, jnp.broadcast_to(map_index[:, None], walked.yaw.shape), motion
+        world.atlas, jnp.broadcast_to(map_index[:, None], walked.yaw.shape), walked.motion
     )
     goal = jnp.broadcast_to(goal, (*walked.yaw.shape, 2))
-    return env.observe(heights, motion, goal), walked.end
+    return env.observe(heights, walked.motion, goal), walked.end
 
 
 def edge_cases(policy: SteeringPolicy) -> Float[np.ndarray, "cases size"]:

@@ -43,6 +43,11 @@ class RollOut:
     refused: Bool[Array, " N"]
 
     @property
+    def motion(self) -> RootMotion:
+        """The root motions, [N, T+1]."""
+        return RootMotion(self.position, self.velocity, self.yaw)
+
+    @property
     def stopped(self) -> Bool[Array, " N"]:
         """Valid to the end of the time, or refused, without reaching the goal."""
         return ~(self.reached | self.invalid)

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.guide.places import Places, on_host
+from jaxleas.guide.places import Places
 from jaxleas.guide.rollout import RollOut, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath, RootMotion, is_ground
@@ -116,5 +116,4 @@ def one(motion: RootMotion, index: int) -> RootMotion:
 
 def _at(walked: RollOut, end: Int[np.ndarray, " N"], count: int) -> RootMotion:
     robot = np.arange(count)
-    whole = walked.position, walked.velocity, walked.yaw
-    return on_host(*(np.asarray(each)[robot, end[:count]] for each in whole))
+    return jax.tree.map(lambda leaf: np.asarray(leaf)[robot, end[:count]], walked.motion)
