@@ -47,31 +47,44 @@ class Walks:
         return cut_walks(self.motion, self.valid, self.valid.sum(axis=1), time_step)
 
 
+@dataclass(frozen=True)
+class WalksWanted:
+    """Which walks to collect.
+
+    Attributes:
+        count: number of walks.
+        steps: steps of each walk.
+        disturbances: standard deviations of the disturbances, one a walk in turn, in units of the
+            action's range; 0 leaves a walk alone.
+    """
+
+    count: int
+    steps: int
+    disturbances: Float[np.ndarray, " kinds"]
+
+
 def collect(
     env: SteeringEnv,
     world: World,
     policy: SteeringPolicy,
     key: Key[Array, ""],
-    count: int,
-    steps: int,
-    disturbance: Float[np.ndarray, " kinds"],
+    wanted: WalksWanted,
 ) -> Walks:
-    """Walk `count` robots for `steps` steps, some of them disturbed.
+    """Walk robots with a policy, some of them disturbed.
 
     A planner's limits show where the policy does not go of itself, so disturbances of several
     strengths are added to its actions, each held for a while: one kind a robot, in turn.
 
     Args:
-        env: the task; its condition ends a walk.
+        env: steering task; its condition ends a walk.
         world: terrains and links.
-        policy: that walks.
-        key: consumed here.
-        count: of walks.
-        steps: of each.
-        disturbance: standard deviations, in units of the action's range; 0 leaves a walk alone.
+        policy: policy that walks.
+        key: random key, consumed here.
+        wanted: number, length and disturbances of the walks.
     """
-    scale = jnp.asarray(disturbance, jnp.float32)[jnp.arange(count) % len(disturbance)]
-    motion, valid, map_index = _walk(env, steps, world, policy, key, scale)
+    kinds = jnp.asarray(wanted.disturbances, jnp.float32)
+    scale = kinds[jnp.arange(wanted.count) % len(kinds)]
+    motion, valid, map_index = _walk(env, wanted.steps, world, policy, key, scale)
     host = jax.tree.map(np.asarray, motion)
     return Walks(host, np.asarray(valid), np.asarray(map_index))
 

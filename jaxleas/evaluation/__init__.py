@@ -1,6 +1,6 @@
 """Evaluation: named suites, success tables with intervals, pictures, the run report."""
 
-from jaxleas.evaluation.comparison import compare
+from jaxleas.evaluation.comparison import Planning, compare
 from jaxleas.evaluation.contenders import Contenders, make_contenders
 from jaxleas.evaluation.exact import ask, judge_exact, summarise_plans, walker
 from jaxleas.evaluation.judge import judge
@@ -20,6 +20,7 @@ __all__ = [
     "CellResult",
     "Contenders",
     "Evaluation",
+    "Planning",
     "Suite",
     "ask",
     "compare",

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.evaluation.comparison import compare, side_by_side_file
+from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import (
     examine,
@@ -116,9 +116,11 @@ def evaluate(
             candidate,
             contenders,
             plan,
-            names,
-            settings={name: settings_from(name, **_given(name, given)) for name in names},
-            processes=processes or os.cpu_count() or 1,
+            Planning(
+                names,
+                {name: settings_from(name, **_given(name, given)) for name in names},
+                processes or os.cpu_count() or 1,
+            ),
             file=file,
             say=reporter.say,
         )

@@ -11,7 +11,7 @@ from jaxleas.evaluation.result_file import AreaResult, CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.rollout import RollOut, roll_out
+from jaxleas.guide.rollout import Trips, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath
 
@@ -58,16 +58,8 @@ def walk(
     env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
 ) -> Walk:
     """Let every start of a cell walk, all at once."""
-    result: RollOut = roll_out(
-        env,
-        grounds.atlas,
-        starts.map_index,
-        method,
-        starts.motion,
-        starts.waypoints,
-        steps,
-        env.config.goal_radius,
-    )
+    trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints)
+    result = roll_out(env, method, trips, steps, env.config.goal_radius)
     return Walk(
         starts=starts,
         position=np.asarray(result.position),

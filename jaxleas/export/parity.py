@@ -16,7 +16,7 @@ from jaxleas.export.errors import ExportError
 from jaxleas.export.stablehlo import stablehlo_from_bytes
 from jaxleas.guide.leas import Leas
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.guide.rollout import roll_out
+from jaxleas.guide.rollout import Trips, roll_out
 from jaxleas.training.policy import SteeringPolicy
 
 TOLERANCE = 1e-5  # [m/s^2] and [rad/s]
@@ -62,9 +62,8 @@ def _record_round(
     episode, _ = take(draw_starts(env, world, pool_key, 4 * robots), take_key, robots)
     map_index, goal = episode.plan.map_index, episode.plan.goals[:, :1]
     waypoints = jnp.pad(goal, ((0, 0), (0, 0), (0, 1)))  # LEAS does not look at a goal's height
-    walked = roll_out(
-        env, world.atlas, map_index, Leas(policy, env), episode.motion, waypoints, steps
-    )
+    trips = Trips(world.atlas, map_index, episode.motion, waypoints)
+    walked = roll_out(env, Leas(policy, env), trips, steps)
     heights = env.local_heights(
         world.atlas, jnp.broadcast_to(map_index[:, None], walked.yaw.shape), walked.motion
     )

@@ -123,7 +123,7 @@ def walk_queries(
     import jax.numpy as jnp
 
     from jaxleas.geometry.rotations import wrap_angle_on_host
-    from jaxleas.guide.rollout import roll_out
+    from jaxleas.guide.rollout import Trips, roll_out
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.types import RootMotion
 
@@ -138,16 +138,13 @@ def walk_queries(
     height = terrain.height_at(goals) + env.robot.walking_height
     height = np.where(is_ground(height), height, [query.position[2] for query in queries])
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
-    return roll_out(
-        env,
+    trips = Trips(
         make_atlas([terrain]),
         jnp.zeros(len(queries), jnp.int32),
-        method,
         start,
         jnp.asarray(waypoints, jnp.float32),
-        steps,
-        env.config.goal_radius,
     )
+    return roll_out(env, method, trips, steps, env.config.goal_radius)
 
 
 def reasons_of(rollout: "RollOut") -> "list[Reason]":

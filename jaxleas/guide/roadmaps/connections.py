@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.guide.places import Places
-from jaxleas.guide.rollout import RollOut, paths, roll_out
+from jaxleas.guide.rollout import RollOut, Trips, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath, RootMotion, is_ground
 
@@ -92,16 +92,9 @@ class Connector:
         return guide_path, bool(walked.reached[0]), bool(walked.invalid[0])
 
     def _walk(self, motion: RootMotion, waypoints: np.ndarray, steps: int) -> RollOut:
-        return roll_out(
-            self.places.env,
-            self.places.atlas,
-            jnp.zeros(len(waypoints), jnp.int32),
-            self.method,
-            motion,
-            jnp.asarray(waypoints),
-            steps,
-            self.radius,
-        )
+        map_index = jnp.zeros(len(waypoints), jnp.int32)
+        trips = Trips(self.places.atlas, map_index, motion, jnp.asarray(waypoints))
+        return roll_out(self.places.env, self.method, trips, steps, self.radius)
 
     def _lifted(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N 3"]:
         height = self.places.root_height(places)
