@@ -111,8 +111,8 @@ def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> 
 def _conclude(config: "RunConfig", run: "RunFolder") -> None:
     if not config.final.evaluate:
         return
-    from jaxleas.evaluation.commands import evaluate, report
     from jaxleas.export.commands import export
+    from jaxleas.reports.commands import evaluate, report
 
     evaluate(run.path, starts=config.final.starts)
     export(run.path)

@@ -14,7 +14,7 @@ ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "xla", "files", "configuration", "workers", "runs"),
     *("geometry", "robots", "terrain", "conditions", "envs", "training"),
-    *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation"),
+    *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation", "reports"),
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "cli"),
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jaxleas.distillation.round_result import RoundResult
-from jaxleas.evaluation.learning_curves import series
+from jaxleas.reports import series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

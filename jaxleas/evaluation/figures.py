@@ -15,8 +15,8 @@ from jaxleas.evaluation.figure_file import (
     StepRow,
     write_figures,
 )
+from jaxleas.evaluation.height_band import height_band
 from jaxleas.evaluation.judge import Walk, rounded
-from jaxleas.evaluation.scene_pictures import height_band
 from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite

@@ -1,14 +1,14 @@
 import pytest
 
-from jaxleas.evaluation.commands import evaluate
 from jaxleas.evaluation.comparison import Planning, compare
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import load_candidate
 from jaxleas.evaluation.forecast import Forecast
-from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import read_evaluation
-from jaxleas.evaluation.side_by_side import markdown, rows
 from jaxleas.labels import Judge, MipSettings
+from jaxleas.reports.commands import evaluate
+from jaxleas.reports.published import published
+from jaxleas.reports.side_by_side import markdown, rows
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.evaluation.conftest import random_policy
@@ -147,7 +147,7 @@ def test_the_command_writes_and_prints_the_table(run, tmp_path, capsys, asked):
 
 
 def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):
-    from jaxleas.evaluation.scene_pictures import draw_side_by_side
+    from jaxleas.reports.scene_pictures import draw_side_by_side
 
     candidate = load_candidate(run)
     walkers = make_contenders(candidate, wanted=["rb_lin"]).walkers

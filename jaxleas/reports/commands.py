@@ -16,12 +16,12 @@ from jaxleas.evaluation.examination import (
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.scene_pictures import draw_side_by_side
-from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.evaluation.table import plain_table
 from jaxleas.labels.settings import SETTINGS, kind_of, require_settings, settings_from
+from jaxleas.reports.scene_pictures import draw_side_by_side
+from jaxleas.reports.side_by_side import side_by_side as table_of
+from jaxleas.reports.table import plain_table
 from jaxleas.types.errors import InputError
 
 
@@ -181,7 +181,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     Raises:
         InputError: it is no run folder, or holds no policy yet.
     """
-    from jaxleas.evaluation.report import write_report
+    from jaxleas.reports.report import write_report
 
     run = Path(run)
     if not run.is_dir():
