@@ -13,7 +13,7 @@ from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.evaluation.conftest import random_policy
 from tests.evaluation.test_exact import verdict
-from tests.evaluation.test_table import cell, evaluation
+from tests.reports.test_table import cell, evaluation
 
 BASELINES = ("rb_lin", "rb_kino")
 
