@@ -122,7 +122,7 @@ def _conclude(config: "RunConfig", run: "RunFolder", allow: Sequence[str]) -> No
     if config.env.task not in SUITED_TASKS:  # judged by its own examination alone
         export(run.path, allow=tuple(allow))
         return
-    from jaxleas.evaluation.commands import evaluate, report
+    from jaxleas.reports.commands import evaluate, report
 
     evaluate(run.path, starts=config.final.starts)
     export(run.path)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.distillation.folder import RoundFolder, read_done
-from jaxleas.distillation.labelling import label_round
+from jaxleas.distillation.labelling import Collection, Oracle, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
@@ -56,13 +56,10 @@ class AgainstSurrogate:
             label_round(
                 folder,
                 place.ground,
-                policy,
-                self._surrogate,
-                place.config.planner,
-                place.labelling,
-                place.config.collect,
-                place.config.seed + number,
-                place.workers,
+                Collection(
+                    policy, self._surrogate, place.config.collect, place.config.seed + number
+                ),
+                Oracle(place.config.planner, place.labelling, place.workers),
                 lambda done, total: say(
                     f"round {number}: {done} of {total} guide paths judged", passing=True
                 ),

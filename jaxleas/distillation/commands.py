@@ -77,7 +77,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     from jaxleas.distillation.report_data import is_distilled
 
     if not is_distilled(Path(run)):
-        from jaxleas.evaluation.commands import report as report_training
+        from jaxleas.reports.commands import report as report_training
 
         return report_training(run, out)
     from jaxleas.distillation.report import write_distilled_report

@@ -9,7 +9,13 @@ import time
 from jaxleas.distillation.against_planner import AgainstPlanner
 from jaxleas.distillation.against_surrogate import AgainstSurrogate
 from jaxleas.distillation.folder import read_done
-from jaxleas.distillation.judging import exact_success, judge_round, mean_robustness, summary
+from jaxleas.distillation.judging import (
+    Examiner,
+    exact_success,
+    judge_round,
+    mean_robustness,
+    summary,
+)
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.round_result import RoundResult
 from jaxleas.distillation.rounds import (
@@ -71,8 +77,7 @@ def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> Rou
         place.folder.round(number).judged,
         practised.policy,
         f"leas_p2_{planner}" if number else "leas_p1",
-        planner,
-        place.judge,
+        Examiner(planner, place.judge),
         place.config.judge,
         lambda words: say(f"round {number}: the exact planner judges {words}", passing=True),
     )

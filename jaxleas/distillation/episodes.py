@@ -12,9 +12,9 @@ from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.distillation.collect import Walks
 from jaxleas.distillation.config import SteeringRun
+from jaxleas.distillation.walking import walk_from_starts
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.world import World
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import normalise
@@ -74,44 +74,35 @@ def make_walk(config: SteeringRun, env: SteeringEnv, networks: ActorCritic, robo
     steps, numbers = config.env.episode_steps, PpoParams.of(config)
 
     def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
-        pool_key, take_key, noise_key = jax.random.split(key, 3)
-        episode, observation = begin(env, world, (pool_key, take_key), robots, of=2 * robots)
+        *start_keys, noise_key = jax.random.split(key, 3)
         progress = state.update.astype(jnp.float32) / config.ppo.updates
         weights = RewardParams.at(numbers.task, progress)
         noise = jax.random.normal(noise_key, (steps, robots, env.action_size))
 
-        def advance(carry, noise_now):
-            episode, observation, walking = carry
+        def act(observation: Array, noise_now: Array) -> tuple[Array, Any]:
             normalised = normalise(observation, state.normaliser)
             logits = networks.answer(state.params.policy, normalised)
             (distribution,) = networks.signature.distributions(logits)
             raw_action = networks.signature.sample((distribution,), (noise_now,))
-            after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))
-            terminated = walking & outcome.terminated
-            record = {
+            choice = {
                 "observation": observation,
                 "raw_action": raw_action,
                 "location": distribution.location,
                 "deviation": distribution.deviation,
-                "reward": outcome.reward,
-                "terminated": terminated,
-                "reached": walking & outcome.reached,
-                "walked": walking,
             }
-            valid = walking & ~outcome.terminated
-            ended = outcome.terminated | outcome.truncated
-            return (after, outcome.observation, walking & ~ended), (record, after.motion, valid)
+            return jnp.tanh(raw_action), choice
 
-        everyone = jnp.ones(robots, dtype=bool)
-        _, (record, motion, valid) = jax.lax.scan(advance, (episode, observation, everyone), noise)
-        whole = jax.tree.map(
-            lambda first, later: jnp.concatenate([first[None], later]),
-            (episode.motion, everyone),
-            (motion, valid),
-        )
-        robot_first = jax.tree.map(lambda leaf: jnp.swapaxes(leaf, 0, 1), (record, whole))
+        walked = walk_from_starts(env, world, (start_keys[0], start_keys[1]), weights, act, noise)
+        record = walked.choice | {
+            "reward": walked.reward,
+            "terminated": walked.walking & walked.terminated,
+            "reached": walked.walking & walked.reached,
+            "walked": walked.walking,
+        }
+        valid = walked.walking & ~walked.terminated
+        valid = jnp.pad(valid, ((0, 0), (1, 0)), constant_values=True)
         cost = weights.alive + weights.failure
-        return robot_first, episode.plan.map_index, cost, state.update
+        return (record, (walked.motion, valid)), walked.map_index, cost, state.update
 
     return walk
 

@@ -7,13 +7,23 @@ no JAX.
 from typing import TYPE_CHECKING, Any
 
 from jaxleas.types.errors import InputError, JaxleasError
-from jaxleas.types.paths import GuidePath
+from jaxleas.types.ground import NO_GROUND, is_ground
+from jaxleas.types.paths import GuidePath, cut_walks
 from jaxleas.types.queries import Query
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
-__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion"]
+__all__ = [
+    "NO_GROUND",
+    "GuidePath",
+    "InputError",
+    "JaxleasError",
+    "Query",
+    "RootMotion",
+    "cut_walks",
+    "is_ground",
+]
 
 
 def __getattr__(name: str) -> Any:

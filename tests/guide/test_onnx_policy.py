@@ -9,7 +9,7 @@ import pytest
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
 from jaxleas.export.write import described
-from jaxleas.guide import leas, load_policy, read_onnx_policy, roll_out
+from jaxleas.guide import Trips, leas, load_policy, read_onnx_policy, roll_out
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError
 from tests.guide.walkers import random_policy, small_arena, starts_on_links
@@ -35,7 +35,7 @@ def test_driven_from_the_host_it_walks_as_on_the_device(file):
     start, waypoints = starts_on_links(env, arena, terrain, 16, seed=5)
     index, atlas = jnp.zeros(16, jnp.int32), make_atlas([terrain])
     here, there = (
-        roll_out(env, atlas, index, leas(env, policy), start, waypoints, 40)
+        roll_out(env, leas(env, policy), Trips(atlas, index, start, waypoints), 40)
         for policy in (read_onnx_policy(file), POLICY)
     )
     np.testing.assert_array_equal(here.end, there.end)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from jaxleas.evaluation.judge import Walk
-from jaxleas.evaluation.pictures import arrow_indices, choose_examples, reach_below_root
+from jaxleas.reports.pictures import arrow_indices, choose_examples, reach_below_root
 
 
 def a_walk(start, reached, invalid) -> Walk:

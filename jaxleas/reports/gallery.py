@@ -9,7 +9,12 @@ import numpy as np
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.judge import Walk, walk
-from jaxleas.evaluation.pictures import (
+from jaxleas.evaluation.stage import Stage
+from jaxleas.evaluation.starts import Grounds, draw_starts
+from jaxleas.evaluation.suites import Cell
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.reports.pictures import (
     GOAL,
     INVALID,
     PATH,
@@ -22,11 +27,6 @@ from jaxleas.evaluation.pictures import (
     draw_profile,
     draw_view,
 )
-from jaxleas.evaluation.stage import Stage
-from jaxleas.evaluation.starts import Grounds, draw_starts
-from jaxleas.evaluation.suites import Cell
-from jaxleas.evaluation.table import cell_title, method_title
-from jaxleas.guide.steering_method import SteeringMethod
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -2,10 +2,10 @@
 
 import pytest
 
-from jaxleas.evaluation.published import published_value, thesis
 from jaxleas.evaluation.recipes import RECIPES
-from jaxleas.evaluation.thesis_tables import thesis_tables
-from tests.evaluation.test_table import cell, evaluation
+from jaxleas.reports.published import published_value, thesis
+from jaxleas.reports.thesis_tables import thesis_tables
+from tests.reports.test_table import cell, evaluation
 
 
 @pytest.mark.parametrize(

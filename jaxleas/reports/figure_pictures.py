@@ -8,10 +8,10 @@ import numpy as np
 
 from jaxleas.evaluation.figure_file import Figures, StepRow
 from jaxleas.evaluation.figures import BASIC, COURSE
-from jaxleas.evaluation.gallery import Picture
-from jaxleas.evaluation.published import thesis
-from jaxleas.evaluation.side_by_side import PLANNER_TITLES
-from jaxleas.evaluation.table import cell_title, method_title
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.reports.gallery import Picture
+from jaxleas.reports.published import thesis
+from jaxleas.reports.side_by_side import PLANNER_TITLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.table import align, cell_title, method_title, percent
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.reports.published import published
+from jaxleas.reports.table import align, percent
 
 PLANNER_TITLES = {"sampling": "sampling", "mip": "MIP", "sl1m": "SL1M"}
 

@@ -1,7 +1,7 @@
 """Where a robot can stand: drawing such places, and saying why it cannot stand elsewhere."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -10,9 +10,10 @@ from jaxtyping import Bool, Float
 
 from jaxleas.conditions import collision, strict_reachability
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion
+from jaxleas.types import InputError, RootMotion, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
 """A place is one to stand at if any of these headings is valid there [rad]."""
@@ -21,11 +22,19 @@ NEARBY = 0.1
 _AT_ONCE, _FEW = 4096, 16  # poses judged in one compiled call
 
 
-@dataclass(frozen=True)
-class Pose:
-    """A root pose at walking height: x, y, z [m] and yaw [rad]."""
+MOST_TRIED = 1_000_000
+"""Points of that grid at most; on larger terrain it is coarser."""
 
-    position: tuple[float, float, float]
+
+class Pose(NamedTuple):
+    """Where an upright root is.
+
+    Attributes:
+        position: of the root in the world [m].
+        yaw: heading [rad].
+    """
+
+    position: Float[np.ndarray, " 3"]
     yaw: float
 
 
@@ -63,9 +72,9 @@ class Places:
     ) -> RootMotion:
         """Return roots at rest at walking height; where there is no ground, at that over z = 0."""
         height = self.root_height(places)
-        height = np.where(np.isnan(height), self.env.robot.walking_height, height)
+        height = np.where(is_ground(height), height, self.env.robot.walking_height)
         position = np.column_stack([places, height]).astype(np.float32)
-        wrapped = (np.asarray(yaw) + np.pi) % (2.0 * np.pi) - np.pi
+        wrapped = wrap_angle_on_host(yaw)
         return on_host(position, np.zeros_like(position), wrapped.astype(np.float32))
 
     def margins(
@@ -87,7 +96,7 @@ class Places:
     ) -> Bool[np.ndarray, " N"]:
         """Tell which poses satisfy the environment's condition above ground."""
         margin = self.margins(places, yaw)["the condition"]
-        return np.logical_and(margin >= 0.0, ~np.isnan(self.root_height(places)))
+        return np.logical_and(margin >= 0.0, is_ground(self.root_height(places)))
 
     def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
         """Tell which places are valid with some heading."""
@@ -140,33 +149,46 @@ class Places:
         valid = self.valid(np.repeat(here, len(headings), axis=0), headings)
         if valid.any():
             chosen = float(headings[np.argmax(valid)])
-            return Pose((*place, float(self.root_height(here)[0])), chosen)
+            return self.pose(here[0], chosen)
         raise InputError(f"{name} {place[0]:g},{place[1]:g}: {self._why(here, headings, yaw)}")
 
-    def _why(self, here: np.ndarray, headings: np.ndarray, yaw: float | None) -> str:
+    def pose(self, place: Float[np.ndarray, " 2"], yaw: float) -> Pose:
+        """Return the pose of a root at walking height; z is NaN where there is no ground."""
+        return Pose(np.array([*place, self.root_height(place[None])[0]]), yaw)
+
+    def why_invalid(
+        self, place: Float[np.ndarray, " 2"], headings: Float[np.ndarray, " H"], facing: str
+    ) -> str:
+        """Return why a robot can stand at a place with none of some headings, and by how much.
+
+        Args:
+            place: x, y [m].
+            headings: headings that were tried [rad].
+            facing: those headings in words: "at yaw 1.5", say.
+        """
         x_min, x_max, y_min, y_max = self.terrain.extent
-        (x, y) = here[0]
+        x, y = place
         if not (x_min <= x <= x_max and y_min <= y <= y_max):
-            reason = (
-                f"off the map, which spans x {x_min:g} to {x_max:g}, y {y_min:g} to {y_max:g} m"
-            )
-        elif np.isnan(self.root_height(here)[0]):
-            reason = "there is no ground"
-        else:
-            margins = self.margins(np.repeat(here, len(headings), axis=0), headings)
-            total = margins.pop("the condition")
-            best = int(np.argmax(total))
-            named = {name: float(each[best]) for name, each in margins.items()}
-            failed = [f"{name} fails by {-m:.2f} m" for name, m in named.items() if m < 0.0]
-            facing = "at any heading" if yaw is None else f"at yaw {yaw:g}"
-            own = f"the condition fails by {-float(total[best]):.2f} m"
-            reason = f"{facing} {' and '.join(failed) or own}"
+            return f"off the map, which spans x {x_min:g} to {x_max:g}, y {y_min:g} to {y_max:g} m"
+        if not is_ground(self.root_height(place[None])[0]):
+            return "there is no ground"
+        margins = self.margins(np.tile(place, (len(headings), 1)), headings)
+        total = margins.pop("the condition")
+        best = int(np.argmax(total))
+        named = {name: float(each[best]) for name, each in margins.items()}
+        failed = [f"{name} fails by {-m:.2f} m" for name, m in named.items() if m < 0.0]
+        own = f"the condition fails by {-float(total[best]):.2f} m"
+        return f"{facing} {' and '.join(failed) or own}"
+
+    def _why(self, here: np.ndarray, headings: np.ndarray, yaw: float | None) -> str:
+        facing = "at any heading" if yaw is None else f"at yaw {yaw:g}"
+        reason = self.why_invalid(here[0], headings, facing)
         nearest = self.nearest(here[0], yaw)
         if nearest is None:
             return f"{reason}; nowhere on this terrain can the robot stand"
         at, heading = nearest
         turned = f",{heading:.2f}" if yaw is not None else ""
-        pose, away = f"{at[0]:.2f},{at[1]:.2f}{turned}", math.dist(at, (x, y))
+        pose, away = f"{at[0]:.2f},{at[1]:.2f}{turned}", math.dist(at, here[0])
         return f"{reason}; the nearest valid pose is {pose}, {away:.2f} m away"
 
     def nearest(
@@ -177,7 +199,8 @@ class Places:
         Of several headings the one nearest to `yaw` is taken.
         """
         x_min, x_max, y_min, y_max = self.terrain.extent
-        x, y = np.arange(x_min, x_max, NEARBY), np.arange(y_min, y_max, NEARBY)
+        spacing = max(NEARBY, math.sqrt((x_max - x_min) * (y_max - y_min) / MOST_TRIED))
+        x, y = np.arange(x_min, x_max, spacing), np.arange(y_min, y_max, spacing)
         grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         grid = np.vstack([here[None], np.round(grid, 2)])
         order = np.argsort(np.linalg.norm(grid - here, axis=1), kind="stable")
@@ -189,7 +212,7 @@ class Places:
             valid = self.valid(np.repeat(some, len(turn), axis=0), headings)
             if valid.any():
                 index = int(np.argmax(valid))
-                heading = (headings[index] + np.pi) % (2.0 * np.pi) - np.pi
+                heading = wrap_angle_on_host(headings[index])
                 at = some[index // len(turn)]
                 return (float(at[0]), float(at[1])), float(heading)
         return None

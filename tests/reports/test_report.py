@@ -4,11 +4,11 @@ from html.parser import HTMLParser
 import pytest
 
 from jaxleas.evaluation.examination import load_candidate
-from jaxleas.evaluation.gallery import Picture, draw_gallery
-from jaxleas.evaluation.report import headlines, render_report, success_rows
 from jaxleas.evaluation.stage import make_stage
+from jaxleas.reports.gallery import Picture, draw_gallery
+from jaxleas.reports.report import headlines, render_report, success_rows
 from tests.evaluation.conftest import StandStill
-from tests.evaluation.test_table import cell, evaluation
+from tests.reports.test_table import cell, evaluation
 
 METRICS = [
     {"step": 1000 * index, "seconds": 2.0 * index, "walk/reward": 0.1 * index}
@@ -125,7 +125,7 @@ def test_the_gallery_draws_every_kind_of_scene(env):
 
 @pytest.mark.slow
 def test_the_report_command_judges_what_is_missing_and_writes_one_file(run, capsys):
-    from jaxleas.evaluation.commands import evaluate, report
+    from jaxleas.reports.commands import evaluate, report
 
     evaluate(run, starts=4)
     (run / "metrics.jsonl").write_text('{"step": 1, "seconds": 2.0, "walk/reward": 1.0}\n')

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
-from jaxleas.evaluation.gallery import Picture, draw_gallery
-from jaxleas.evaluation.learning_curves import draw_learning_curves
-from jaxleas.evaluation.page import page_template
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
-from jaxleas.evaluation.table import (
+from jaxleas.files import read_json, write_bytes, write_text
+from jaxleas.reports.gallery import Picture, draw_gallery
+from jaxleas.reports.learning_curves import draw_learning_curves
+from jaxleas.reports.page import page_template
+from jaxleas.reports.table import (
     HEADINGS,
     cell_title,
     filled_columns,
@@ -22,7 +23,6 @@ from jaxleas.evaluation.table import (
     percent,
     rows,
 )
-from jaxleas.files import read_json, write_bytes, write_text
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.types import InputError
 
@@ -95,7 +95,7 @@ def render_report(
         pictures: in the order they appear.
     """
     by_suite = {evaluation.suite: evaluation for evaluation in evaluations}
-    return page_template("jaxleas.evaluation", TEMPLATE).render(
+    return page_template("jaxleas.reports", TEMPLATE).render(
         name=run.resolve().name,
         headlines=headlines(by_suite, metrics),
         success=success_rows(by_suite.get("transitions")),

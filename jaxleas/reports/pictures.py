@@ -8,9 +8,11 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.evaluation.judge import Walk
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.robots import Robot
 from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import is_ground
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,7 +139,7 @@ def arrow_indices(
 ) -> Int[np.ndarray, " K"]:
     """Return where along a path arrows show its heading: evenly by distance and by turning."""
     moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1) / ARROW_SPACING
-    turned = np.abs((np.diff(yaw) + np.pi) % (2.0 * np.pi) - np.pi) / ARROW_TURN
+    turned = np.abs(wrap_angle_on_host(np.diff(yaw))) / ARROW_TURN
     travelled = np.concatenate([[0.0], np.cumsum(moved + turned)])
     spacing = max(1.0, travelled[-1] / MOST_ARROWS)
     wanted = np.arange(0.0, travelled[-1] + 1e-9, spacing)
@@ -190,7 +192,7 @@ def draw_profile(
     height = ground.height_at(np.column_stack([x, y])).astype(np.float64)
     distance = fine
     floor = float(np.nanmin(height)) - 0.25
-    solid = np.where(np.isnan(height), floor, height)
+    solid = np.where(is_ground(height), height, floor)
 
     ax.fill_between(distance, floor, solid, color="0.55", linewidth=0, label="ground")
     ax.fill_between(

@@ -2,19 +2,11 @@
 
 from collections.abc import Sequence
 
-from jaxleas.evaluation.published import published_value
 from jaxleas.evaluation.result_file import AreaResult, CellResult, Evaluation
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.reports.published import published_value
 
 THESIS_METHOD = "leas_p1"
-METHOD_TITLES = {
-    "rb_lin": "RB-Lin",
-    "rb_kino": "RB-Kino",
-    "rb_kino_rrt": "RB-Kino + RRT",
-    "leas_p1": "LEAS-P1",
-    "leas_p2_sampling": "LEAS-P2 (sampling)",
-    "leas_p2_mip": "LEAS-P2 (MIP)",
-    "leas_p2_sl1m": "LEAS-P2 (SL1M)",
-}
 HEADINGS = (
     "cell",
     "yaw",
@@ -30,16 +22,6 @@ HEADINGS = (
     "detour",
     "thesis",
 )
-
-
-def cell_title(name: str) -> str:
-    """Return a cell's name for people."""
-    return name.replace("_", " ")
-
-
-def method_title(name: str) -> str:
-    """Return a method's name for people."""
-    return METHOD_TITLES.get(name, name)
 
 
 def percent(fraction: float | None, digits: int = 1) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.evaluation.comparison import compare, side_by_side_file
+from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import (
     examine,
@@ -16,12 +16,12 @@ from jaxleas.evaluation.examination import (
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.scene_pictures import draw_side_by_side
-from jaxleas.evaluation.side_by_side import side_by_side as table_of
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.evaluation.table import plain_table
 from jaxleas.labels.settings import SETTINGS, kind_of, require_settings, settings_from
+from jaxleas.reports.scene_pictures import draw_side_by_side
+from jaxleas.reports.side_by_side import side_by_side as table_of
+from jaxleas.reports.table import plain_table
 from jaxleas.types.errors import InputError
 
 
@@ -116,9 +116,11 @@ def evaluate(
             candidate,
             contenders,
             plan,
-            names,
-            settings={name: settings_from(name, **_given(name, given)) for name in names},
-            processes=processes or os.cpu_count() or 1,
+            Planning(
+                names,
+                {name: settings_from(name, **_given(name, given)) for name in names},
+                processes or os.cpu_count() or 1,
+            ),
             file=file,
             say=reporter.say,
         )
@@ -179,7 +181,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     Raises:
         InputError: it is no run folder, or holds no policy yet.
     """
-    from jaxleas.evaluation.report import write_report
+    from jaxleas.reports.report import write_report
 
     run = Path(run)
     if not run.is_dir():

@@ -42,7 +42,7 @@ class Published(Strict):
 @cache
 def thesis() -> Published:
     """Return the thesis's numbers."""
-    text = resources.files("jaxleas.evaluation").joinpath("thesis.json").read_text("utf-8")
+    text = resources.files("jaxleas.reports").joinpath("thesis.json").read_text("utf-8")
     return Published.model_validate(json.loads(text))
 
 

@@ -10,13 +10,14 @@ import numpy as np
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Judged, Walker, ask
-from jaxleas.evaluation.gallery import legend
-from jaxleas.evaluation.pictures import View, choose_examples, draw_view
+from jaxleas.evaluation.height_band import height_band
 from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.evaluation.table import cell_title, method_title
+from jaxleas.evaluation.titles import cell_title, method_title
 from jaxleas.files import write_bytes
 from jaxleas.labels import Judge
+from jaxleas.reports.gallery import legend
+from jaxleas.reports.pictures import View, choose_examples, draw_view
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,29 +122,6 @@ def _root_heights(grounds: Grounds, cell: Cell, judged: Mapping[str, Judged]) ->
     ax.grid(color="0.9", linewidth=0.5)
     ax.legend(fontsize=8, frameon=False)
     return figure
-
-
-def height_band(judged: Judged, along: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lowest, mean and highest root height at each x, of the paths that reached the goal.
-
-    Args:
-        judged: the walks.
-        along: x [m], ascending; NaN comes back where fewer than half of the paths pass.
-    """
-    heights = []
-    for index in np.flatnonzero(judged.walk.reached):
-        path = judged.walk.path(int(index)).astype(np.float64)
-        x = np.maximum.accumulate(path[:, 0])
-        heights.append(np.interp(along, x, path[:, 2], left=np.nan, right=np.nan))
-    if not heights:
-        nothing = np.full(len(along), np.nan)
-        return nothing, nothing, nothing
-    stack = np.array(heights)
-    there = np.isfinite(stack).mean(axis=0) >= 0.5
-    band = np.full((3, len(along)), np.nan)
-    for row, function in enumerate((np.nanmin, np.nanmean, np.nanmax)):
-        band[row, there] = function(stack[:, there], axis=0)
-    return band[0], band[1], band[2]
 
 
 def _heading(cell: Cell) -> str:

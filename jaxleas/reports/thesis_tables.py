@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from jaxleas.evaluation.published import PublishedRow, PublishedTable, thesis
 from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.table import cell_title, method_title, percent
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.reports.published import PublishedRow, PublishedTable, thesis
+from jaxleas.reports.table import percent
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@ import shutil
 
 import pytest
 
-from jaxleas.evaluation.commands import evaluate, report
 from jaxleas.evaluation.examination import (
     evaluation_file,
     keep_evaluation,
@@ -11,6 +10,7 @@ from jaxleas.evaluation.examination import (
 )
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import read_evaluation
+from jaxleas.reports.commands import evaluate, report
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.evaluation.conftest import random_policy

@@ -1,5 +1,5 @@
 from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.table import percent, plain_table
+from jaxleas.reports.table import percent, plain_table
 
 
 def cell(**changes) -> CellResult:
