@@ -1,5 +1,6 @@
 """What a policy really sees: recorded from its own walks, and edge cases after them."""
 
+from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -8,12 +9,15 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
+from jaxleas.configuration.values import value_of
 from jaxleas.envs.environment import Task
 from jaxleas.envs.host_starts import HostPool
 from jaxleas.envs.starts import pool_of, take
 from jaxleas.training.policy import Policy
 
 LEAST_OBSERVATIONS = 10_000
+Record = Callable[[Policy, Any, Array], tuple[Any, Any]]
+"""Returns what every robot sees before each step, and whether it still walks then."""
 
 
 def record_observations(
@@ -40,24 +44,21 @@ def record_observations(
     Returns:
         What the actor sees, one vector each.
     """
-    record = _record_on_host if task.on_host else _record_on_device
+    record = _on_host(task, robots, steps) if task.on_host else _on_device(task, robots, steps)
     recorded: list[np.ndarray] = []
     while sum(map(len, recorded)) < LEAST_OBSERVATIONS:
         key, round_key = jax.random.split(key)
-        seen, walking = record(policy, task, world, round_key, robots, steps)
+        seen, walking = record(policy, world, round_key)
         recorded.append(np.asarray(seen)[np.asarray(walking)])
     return np.concatenate([*recorded, edge_cases(policy)])
 
 
-def _record_on_device(
-    policy: Policy, task: Task, world: Any, key: Array, robots: int, steps: int
-) -> tuple[Array, Array]:
-    """Return what every robot sees before each step, and whether it still walks then."""
+def _on_device(task: Task, robots: int, steps: int) -> Record:
+    """Return what records a round of a task that steps on the device, compiled once."""
     weights = task.weights(_numbers(task), 0.0)
-    disturbance_key, pool_key, take_key = jax.random.split(key, 3)
 
-    @jax.jit
-    def walk(policy: Policy, world: Any) -> tuple[Array, Array]:
+    def record(policy: Policy, world: Any, key: Array) -> tuple[Array, Array]:
+        disturbance_key, pool_key, take_key = jax.random.split(key, 3)
         starts = task.draw_starts(world, pool_key, 4 * robots, examined=True)
         episode, _ = take(pool_of(starts), take_key, robots)
         disturbances = task.draw_disturbances(disturbance_key, (steps, robots))
@@ -73,37 +74,36 @@ def _record_on_device(
         carry = (episode, jnp.ones(robots, dtype=bool))
         return jax.lax.scan(advance, carry, disturbances, length=steps)[1]
 
-    return walk(policy, world)
+    return jax.jit(record)
 
 
-def _record_on_host(
-    policy: Policy, task: Task, world: Any, key: Array, robots: int, steps: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the same of a task that steps on the host."""
-    words = np.asarray(jax.random.key_data(key)).ravel().tolist()
-    generator = np.random.default_rng(words)
+def _on_host(task: Task, robots: int, steps: int) -> Record:
+    """Return what records a round of a task that steps on the host."""
     weights = task.weights(jax.tree.map(float, _numbers(task)), 0.0)
-    pool = HostPool.of(task.draw_starts(world, generator, 4 * robots, examined=True))
-    episode, _ = pool.take(pool.draw_picks(generator, (robots,)))
     act = jax.jit(lambda policy, seen: policy.signature.mode(policy.answer_vector(seen)))
-    walking, record = np.ones(robots, dtype=bool), []
-    for _ in range(steps):
-        if not walking.any():
-            break
-        packed = np.asarray(task.signature.pack(task.look(world, episode)), np.float32)
-        seen = np.asarray(task.signature.for_actor(packed))
-        action = jax.device_get(act(policy, seen))
-        drawn = task.draw_disturbances(generator, (1, robots))
-        disturbance = jax.tree.map(lambda leaf: leaf[0], drawn)
-        episode, result = task.advance(world, weights, episode, action, disturbance)
-        record.append((seen, walking))
-        walking = walking & ~(result.terminated | result.truncated | result.reached)
-    return np.stack([seen for seen, _ in record]), np.stack([walks for _, walks in record])
+
+    def record(policy: Policy, world: Any, key: Array) -> tuple[np.ndarray, np.ndarray]:
+        generator = np.random.default_rng(np.asarray(jax.random.key_data(key)).ravel().tolist())
+        pool = HostPool.of(task.draw_starts(world, generator, 4 * robots, examined=True))
+        episode, _ = pool.take(pool.draw_picks(generator, (robots,)))
+        walking, rows = np.ones(robots, dtype=bool), []
+        for _ in range(steps):
+            if not walking.any():
+                break
+            packed = np.asarray(task.signature.pack(task.look(world, episode)), np.float32)
+            seen = np.asarray(task.signature.for_actor(packed))
+            action = jax.device_get(act(policy, seen))
+            drawn = task.draw_disturbances(generator, (1, robots))
+            disturbance = jax.tree.map(lambda leaf: leaf[0], drawn)
+            episode, result = task.advance(world, weights, episode, action, disturbance)
+            rows.append((seen, walking))
+            walking = walking & ~(result.terminated | result.truncated | result.reached)
+        return np.stack([seen for seen, _ in rows]), np.stack([walks for _, walks in rows])
+
+    return record
 
 
 def _numbers(task: Task) -> dict[str, Any]:
-    from jaxleas.configuration.values import value_of
-
     return {name: jnp.float32(value_of(task.config, name)) for name in task.config.swept}
 
 

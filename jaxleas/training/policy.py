@@ -156,7 +156,7 @@ def read_policy(
         params = network.parameters(arrays)
     except ValueError as error:
         raise InputError(
-            f"{path} is no policy of the task {found.task} for its {network.inputs} values: {error}"
+            f"{path} is no policy for the {network.inputs} values of the task {found.task}: {error}"
         ) from error
     if arrays["mean"].shape != (network.inputs,) or arrays["deviation"].shape != (network.inputs,):
         raise InputError(

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -79,6 +80,7 @@ def test_its_policy_leaves_as_onnx_with_named_parts(runs, task):
     assert about["task"] == task
 
 
+@pytest.mark.slow
 @BOTH
 def test_killed_and_resumed_it_ends_as_if_never_killed(runs, task, tmp_path):
     folder = tmp_path / "killed"
@@ -133,6 +135,7 @@ def test_an_unknown_task_gets_the_nearest_right_name(tmp_path):
     )
 
 
+@pytest.mark.slow
 @BOTH
 def test_it_is_swept(task, tmp_path):
     base = write(tmp_path, task)
@@ -170,8 +173,8 @@ def test_a_population_of_a_task_on_the_host_is_refused_with_one_sentence(tmp_pat
     assert not (tmp_path / "out").exists()
 
 
-def test_a_host_task_that_stands_still_has_the_walk_of_its_twin(tmp_path):
-    """The state of a host task is NumPy's, in its own types, and comes back from a checkpoint."""
+def test_the_state_of_a_host_task_comes_back_from_a_checkpoint(tmp_path, brax_ranks):
+    """It is NumPy's, in its own types."""
     config = load_run_config(write(tmp_path, MAZE), allow=[MAZE])
     trainer = Trainer(config, make_task(config, [MAZE]))
     state = trainer.fresh_state()
@@ -185,3 +188,26 @@ def test_a_host_task_that_stands_still_has_the_walk_of_its_twin(tmp_path):
     second, _ = trainer.train_step(trainer.world, again)
     np.testing.assert_array_equal(first.episode["place"], second.episode["place"])
     np.testing.assert_array_equal(first.observation, second.observation)
+
+
+@pytest.mark.slow
+def test_the_task_of_the_documentation_trains(tmp_path):
+    """The page's own files, by the page's own command."""
+    page = (ROOT / "docs/your_own_task.md").read_text(encoding="utf-8")
+    for name, body in re.findall(r"<!-- file: (\S+) -->\n```\w+\n(.*?)^```", page, re.M | re.S):
+        (tmp_path / name).write_text(body)
+    command = [sys.executable, ROOT / "train.py", "stride.yaml", "--run-dir", "runs/stride"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true"}
+    done = subprocess.run(
+        [*map(str, command), "--allow", "stride:Stride", "--devices", "1"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    rows = read_metrics(tmp_path / "runs/stride/metrics.jsonl")
+    assert max(row.get("held_out/reached") or 0.0 for row in rows) > 0.95
+    session = onnxruntime.InferenceSession(str(tmp_path / "runs/stride/policy.onnx"))
+    (step,) = session.run(None, {"ahead": np.array([[3.0]], np.float32)})
+    assert 0.0 <= step[0, 0] <= 0.4

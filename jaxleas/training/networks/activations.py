@@ -3,6 +3,7 @@
 from typing import Literal
 
 from jaxleas.training.brax_blocks import ACTIVATION
+from jaxleas.types.errors import InputError
 from jaxleas.types.onnx_nodes import OnnxNodes
 
 Activation = Literal["relu", "tanh", "swish", "elu"]
@@ -10,7 +11,11 @@ ACTIVATIONS = {name: ACTIVATION[name] for name in ("relu", "tanh", "swish", "elu
 
 
 def onnx_activation(nodes: OnnxNodes, name: str, value: str) -> str:
-    """Add the nodes of an activation; return the name of its result."""
+    """Add the nodes of an activation; return the name of its result.
+
+    Raises:
+        InputError: ONNX has no counterpart of it.
+    """
     match name:
         case "relu":
             return nodes.add("Relu", value)
@@ -21,4 +26,4 @@ def onnx_activation(nodes: OnnxNodes, name: str, value: str) -> str:
         case "swish":
             return nodes.add("Mul", value, nodes.add("Sigmoid", value))
         case other:
-            raise ValueError(f"the activation {other!r} has no counterpart in ONNX")
+            raise InputError(f"the activation {other!r} cannot be exported to ONNX")
