@@ -13,6 +13,7 @@ from jaxleas.conditions.condition import (
     read_from,
     stated_points,
     union_of_points,
+    with_points,
 )
 from jaxleas.conditions.exact import (
     exact_collision,
@@ -57,4 +58,5 @@ __all__ = [
     "stated_points",
     "strict_reachability",
     "union_of_points",
+    "with_points",
 ]

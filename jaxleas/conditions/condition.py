@@ -70,10 +70,18 @@ class OnPoints:
 
 def stated_points(condition: Condition | Judge) -> Points | None:
     """Return the points that a condition states, or None for a plain callable."""
-    return getattr(condition, "points_in_root", None)
+    points = getattr(condition, "points_in_root", None)
+    return None if points is None else np.asarray(points, dtype=np.float64)
 
 
-def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
+def with_points(condition: Condition | Judge, points: Points) -> Condition:
+    """Return a condition as it is; a plain callable as one that reads the heights at `points`."""
+    if stated_points(condition) is None:
+        return OnPoints(points, condition)
+    return condition  # type: ignore[return-value]
+
+
+def all_of(*conditions: Any, order: Points | None = None) -> Any:
     """Return the condition that holds where all of `conditions` do: the least of their margins.
 
     It reads the union of their points. A plain callable states no points: it is given all the

@@ -8,6 +8,7 @@ from jaxleas.files.atomic import (
     write_npz,
     write_text,
 )
+from jaxleas.files.digest import digest_of, require_digest
 from jaxleas.files.json_text import parse_json
 from jaxleas.files.keys import refuse_misspelt_keys
 from jaxleas.files.lock import FolderLock
@@ -24,6 +25,7 @@ from jaxleas.files.typed import read_typed, typed
 __all__ = [
     "FolderLock",
     "atomic_path",
+    "digest_of",
     "is_file",
     "parse_json",
     "read_bytes",
@@ -31,6 +33,7 @@ __all__ = [
     "read_npz",
     "read_typed",
     "refuse_misspelt_keys",
+    "require_digest",
     "require_version",
     "require_version_array",
     "sweep_temporaries",
