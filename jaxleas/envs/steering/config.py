@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.conditions.named import STANDARD, NamedConditions
 from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive
 from jaxleas.configuration.strict import Strict
 
@@ -65,6 +66,10 @@ class SteeringConfig(Strict):
     """Share of episodes that begin with a random goal, as all do once their link is crossed."""
     goal_steps: tuple[Count, Count] = (200, 800)
     """A goal lasts a random number of steps in this range, or until it is reached."""
+    conditions: NamedConditions = STANDARD
+    """What ends an episode where it fails: `reachability` (R), `strict_reachability` (R*),
+    `collision` (C), one `{surrogate: FILE}`, and MODULE:CLASS of one's own, which --allow must
+    repeat on the command line."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
 
