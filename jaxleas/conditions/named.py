@@ -1,5 +1,6 @@
 """Conditions as a configuration names them."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -76,15 +77,11 @@ def pinned(named: tuple[Named, ...]) -> tuple[Named, ...]:
     )
 
 
-def standard_if_foreign(named: tuple[Named, ...], allow: Any = ()) -> tuple[Named, ...]:
-    """Return the conditions to walk a policy under that comes with these.
-
-    Built-in conditions are kept, and code that is allowed. What would run other code or follow a
-    surrogate's file gives way to R* and C.
+def harmless(named: tuple[Named, ...], allow: Collection[str] = ()) -> bool:
+    """Return whether conditions are built in or allowed: neither other code nor a file.
 
     Args:
-        named: conditions that the policy was trained under.
+        named: conditions that a file states, a stranger's perhaps.
         allow: each MODULE:CLASS that a person has named.
     """
-    kept = all(isinstance(each, str) and (each in CONDITIONS or each in allow) for each in named)
-    return named if kept else STANDARD
+    return all(isinstance(each, str) and (each in CONDITIONS or each in allow) for each in named)

@@ -62,7 +62,7 @@ def _export_run(folder: Path, out: Path | None) -> Path:
         raise InputError(f"{folder} is a file; the run folder, as train.py writes it, would do")
     policy = read_policy(policy_file(folder))
     config = load_config(RunConfig, folder / "config.yaml")
-    env = SteeringEnv(policy.config)
+    env = SteeringEnv(policy.config.under_standard_conditions())
     observations = record_observations(
         policy, env, held_out_world(config), jax.random.key(RECORDING_KEY)
     )

@@ -77,7 +77,7 @@ def never(objective: Objective, value: float, total: float) -> bool:
 def _exact_success(run: Path, objective: Exact) -> float:
     """Return the mean share of starts that reach their goal with contacts all the way."""
     policy = read_policy(run / POLICY_FILE)
-    env = SteeringEnv(policy.config)
+    env = SteeringEnv(policy.config.under_standard_conditions())
     settings: Any = settings_from(objective.planner, **objective.parameters)
     shares = []
     with Judge(objective.planner, settings) as judge:

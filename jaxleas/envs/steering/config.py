@@ -73,6 +73,10 @@ class SteeringConfig(Strict):
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
 
+    def under_standard_conditions(self) -> Self:
+        """Return the same task under R* and C, by which policies are compared."""
+        return self.model_copy(update={"conditions": STANDARD})
+
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if self.height_low >= self.height_high:
