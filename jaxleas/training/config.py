@@ -8,6 +8,7 @@ from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive,
 from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.own_files import Entry as TerrainEntry
 from jaxleas.terrain.seeds import MAX_TRAINING_SEED
 
 
@@ -44,6 +45,22 @@ class TerrainConfig(Strict):
     """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
     shares: LinkShares = LinkShares()
     generator: GeneratorConfig = GeneratorConfig()
+    files: tuple[TerrainEntry, ...] = ()
+    """Terrain files of one's own to train on beside the generator's arenas: paths, or
+    `{file: PATH, up: y, scale: 0.001}` with what a file does not say of itself. They train, they
+    never judge."""
+    files_share: Fraction = 0.0
+    """Share of the starts that fall on these files, each as often as any other."""
+
+    @model_validator(mode="after")
+    def _files_have_a_share(self) -> Self:
+        if self.files and not self.files_share:
+            raise ValueError("files are given, but files_share is 0: give a share, such as 0.5")
+        if self.files_share and not self.files:
+            raise ValueError(
+                f"files_share is {self.files_share:g}, but no files are given: give files, too"
+            )
+        return self
 
 
 class NetworkConfig(Strict):

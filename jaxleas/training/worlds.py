@@ -1,7 +1,10 @@
 """The terrains of a run: those trained on, and those held out for the examination."""
 
-from jaxleas.envs.steering.world import World, make_world
+from jaxleas.envs.steering.own_terrain import make_own_terrain
+from jaxleas.envs.steering.world import OwnMaps, World, make_world
+from jaxleas.robots import load_robot
 from jaxleas.terrain.generator import generate_arena
+from jaxleas.terrain.own_files import read_own_terrain
 from jaxleas.terrain.seeds import HELD_OUT_SEED, MAX_TRAINING_SEED
 from jaxleas.training.config import RunConfig
 from jaxleas.types import InputError
@@ -10,10 +13,11 @@ NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
 
 
 def training_world(config: RunConfig) -> World:
-    """Generate the arenas to train on.
+    """Generate the arenas to train on, and read the terrain files.
 
     Raises:
-        InputError: their seeds would leave the training range, or no arena has a link.
+        InputError: their seeds would leave the training range, no arena has a link, or a file
+            cannot be trained on.
     """
     terrain = config.terrain
     last = terrain.first_seed + terrain.arenas - 1
@@ -25,7 +29,27 @@ def training_world(config: RunConfig) -> World:
     arenas = [
         generate_arena(terrain.generator, seed) for seed in range(terrain.first_seed, last + 1)
     ]
-    return make_world(arenas, terrain.resolution, terrain.shares.model_dump())
+    return make_world(arenas, terrain.resolution, terrain.shares.model_dump(), own_maps(config))
+
+
+def require_own_terrain(config: RunConfig) -> None:
+    """Refuse terrain files that cannot be trained on, before a run folder is made.
+
+    Raises:
+        InputError: one sentence with file and key.
+    """
+    files = own_maps(config)
+    if files is not None:
+        make_own_terrain(files.robot, files.maps, files.share, first_map=0)
+
+
+def own_maps(config: RunConfig) -> OwnMaps | None:
+    """Read the terrain files of a configuration; None: it names none."""
+    terrain = config.terrain
+    if not terrain.files:
+        return None
+    maps = read_own_terrain(terrain.files, terrain.resolution)
+    return OwnMaps(maps, terrain.files_share, load_robot(config.env.robot))
 
 
 def held_out_world(config: RunConfig) -> World:
