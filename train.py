@@ -4,7 +4,8 @@ python train.py configs/leas_p1.yaml [--run-dir DIR] [--any.field VALUE ...]
 python train.py --resume RUN
 
 Either with [--devices all|N], and with [--coordinator HOST:PORT --process I/N] or
-[--coordinator auto] for each of several processes that train together.
+[--coordinator auto] for each of several processes that train together. --allow MODULE:CLASS permits
+code that the configuration names, also at --resume.
 """
 
 import argparse
@@ -38,7 +39,7 @@ def main(arguments: Sequence[str]) -> None:
     if given.coordinator is None and given.process is None:
         config, devices, run = _open(given, overrides, arguments)
         with run:
-            _train(config, devices, run)
+            _train(config, devices, run, given.allow)
             _conclude(config, run)
     else:
         _train_together(given, overrides, arguments)
@@ -62,7 +63,7 @@ def _train_together(
     config = RunConfig.model_validate_json(from_first(open_run))
     run = opened[0][2] if opened else None
     with run or nullcontext():
-        _train(config, choose_devices(given.devices, config.ppo), run)
+        _train(config, choose_devices(given.devices, config.ppo), run, given.allow)
         disconnect()
         if run is not None:
             _conclude(config, run)
@@ -72,16 +73,22 @@ def _open(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
 ) -> "tuple[RunConfig, Devices, RunFolder]":
     from jaxleas.configuration.loading import load_config, to_yaml
+    from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.runs.folder import RunFolder
     from jaxleas.runs.watching import require_watchers
     from jaxleas.training.config import RunConfig
+    from jaxleas.training.pinning import pinned
+    from jaxleas.training.worlds import require_own_terrain
 
     if given.resume:
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
         config = load_config(RunConfig, run.config)
+        SteeringEnv(config.env, allow=given.allow)
         return config, _devices(given, config), run
-    config = load_config(RunConfig, given.config, overrides)
+    config = pinned(load_config(RunConfig, given.config, overrides))
     require_watchers(config.watch)  # before a folder is made
+    SteeringEnv(config.env, allow=given.allow)  # likewise: its conditions may be missing
+    require_own_terrain(config)
     devices = _devices(given, config)
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
@@ -97,15 +104,17 @@ def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
     return choose_devices(given.devices, config.ppo)
 
 
-def _train(config: "RunConfig", devices: "Devices", run: "RunFolder | None") -> None:
+def _train(
+    config: "RunConfig", devices: "Devices", run: "RunFolder | None", allow: Sequence[str]
+) -> None:
     from jaxleas.training.loop import assist, train
     from jaxleas.xla.compilation import keep_compiled_programs
 
     keep_compiled_programs()
     if run is None:
-        assist(config, devices)
+        assist(config, devices, allow=allow)
     else:
-        train(config, run, devices=devices)
+        train(config, run, devices=devices, allow=allow)
 
 
 def _conclude(config: "RunConfig", run: "RunFolder") -> None:
@@ -124,6 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("config", nargs="?")
     parser.add_argument("--run-dir")
     parser.add_argument("--resume", metavar="RUN")
+    parser.add_argument("--allow", action="append", default=[], metavar="MODULE:CLASS")
     parser.add_argument("--devices", type=_device_count, default="all", metavar="all|N")
     parser.add_argument("--coordinator", metavar="HOST:PORT")
     parser.add_argument("--process", metavar="I/N")

@@ -1,7 +1,7 @@
 """The training loop: update, log, examine, keep the state, and be ready to stop at any moment."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -56,6 +56,7 @@ class Trainer:
         condition: that ends episodes; by default the environment's own, R* and C.
         devices: that share the training; by default the first.
         foresight: that ends episodes, too, such as a surrogate of a contact planner.
+        allow: each MODULE:CLASS of the configuration that a person has named.
         env: the task.
         world: terrains to train on.
         held_out: terrains of the examination.
@@ -68,6 +69,7 @@ class Trainer:
     condition: Condition | None = None
     devices: Devices = field(default_factory=one_device)
     foresight: Foresight | None = None
+    allow: Collection[str] = ()
     env: SteeringEnv = field(init=False)
     world: World = field(init=False)
     held_out: World = field(init=False)
@@ -79,7 +81,7 @@ class Trainer:
 
     def __post_init__(self) -> None:
         config, devices = self.config, self.devices
-        self.env = SteeringEnv(config.env, self.condition, self.foresight)
+        self.env = SteeringEnv(config.env, self.condition, self.foresight, self.allow)
         self.world = jax.device_put(training_world(config), devices.whole)
         self.held_out = jax.device_put(held_out_world(config), devices.whole)
         networks = make_networks(config.network, self.env)
@@ -112,6 +114,7 @@ def train(
     foresight: Foresight | None = None,
     learned: Learned | None = None,
     on_examined: Callable[[], None] = lambda: None,
+    allow: Collection[str] = (),
 ) -> SteeringPolicy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
@@ -127,6 +130,7 @@ def train(
         learned: to begin with, in place of fresh networks; a resumed run has its own.
         on_examined: called when an examination's rows are in the run folder, its checkpoint on its
             way; what it raises ends the training, and the folder can be gone on with.
+        allow: each MODULE:CLASS of the configuration's conditions that a person has named.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -137,7 +141,7 @@ def train(
         InputError: a watcher is not installed or not set up.
     """
     require_watchers(config.watch)  # before minutes go into compiling
-    trainer = Trainer(config, condition, devices or one_device(), foresight)
+    trainer = Trainer(config, condition, devices or one_device(), foresight, allow)
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
@@ -160,19 +164,25 @@ def train(
     return read_policy(run.path / POLICY_FILE)
 
 
-def assist(config: RunConfig, devices: Devices, condition: Condition | None = None) -> None:
+def assist(
+    config: RunConfig,
+    devices: Devices,
+    condition: Condition | None = None,
+    allow: Collection[str] = (),
+) -> None:
     """Take part in a training whose run folder process 0 holds: compute, and write nothing.
 
     Args:
         config: of the run.
         devices: of all processes.
         condition: that ends episodes, in place of R* and C.
+        allow: each MODULE:CLASS of the configuration's conditions that a person has named.
 
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked a process to stop.
     """
-    trainer = Trainer(config, condition, devices)
+    trainer = Trainer(config, condition, devices, allow=allow)
     _, state, _ = _first_state(trainer, None)
     with Interruption() as interruption:
         _Session(trainer, interruption, None).go_on(state)
