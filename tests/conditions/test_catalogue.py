@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import yaml
 
-from jaxleas.conditions import stated_points
 from jaxleas.conditions.named import STANDARD, SurrogateSettings, harmless, pinned
 from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
@@ -115,7 +114,7 @@ def test_a_surrogate_becomes_the_foresight(folder):
     env = SteeringEnv(config.env)
     assert isinstance(env.foresight, SurrogateForesight)
     assert env.foresight.threshold == 0.5
-    assert len(stated_points(env._judge)) < len(env.points_in_root)
+    assert len(env._judge.points_in_root) < len(env.points_in_root)
     other = SurrogateForesight(surrogate(hazard=0.1))
     assert SteeringEnv(config.env, foresight=other).foresight is other
 

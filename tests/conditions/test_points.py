@@ -60,7 +60,7 @@ def test_a_condition_keeps_the_points_that_matter_to_it(kind):
     void = jnp.full((1, len(narrow.points_in_root)), VOID_IN_ROOT)
     for index in range(len(narrow.points_in_root)):
         changed = [narrow(void.at[:, index].set(z), at_rest(1)) for z in (-0.9, -0.7, 0.0)]
-        assert np.any(np.stack(changed) != narrow(void, at_rest(1)))
+        assert any(each[0] != narrow(void, at_rest(1))[0] for each in changed)
 
 
 @pytest.mark.parametrize("layout", [THESIS144, ICRA81], ids=lambda layout: layout.name)

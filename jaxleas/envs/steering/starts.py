@@ -82,8 +82,9 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
     arrives = env.condition(arrival_heights, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
-    if own is not None:
-        valid &= arrives | ~own.chosen
+    if world.own is not None and own is not None:
+        over_ground = world.atlas.height_at(own.map_index, own.start[:, None])[:, 0] > VOID
+        valid &= (arrives & over_ground) | ~own.chosen
     return StartPool(
         state=state,
         observation=env.observe(heights, motion, env.goal(state)),
