@@ -81,9 +81,11 @@ def _open(
     from jaxleas.training.worlds import require_own_terrain
 
     if given.resume:
+        found = RunFolder.open(given.resume, needs_checkpoint=False)
+        # Before the folder is held: code that it names may not be allowed.
+        SteeringEnv(load_config(RunConfig, found.config).env, allow=given.allow)
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
         config = load_config(RunConfig, run.config)
-        SteeringEnv(config.env, allow=given.allow)
         return config, _devices(given, config), run
     config = pinned(load_config(RunConfig, given.config, overrides))
     require_watchers(config.watch)  # before a folder is made

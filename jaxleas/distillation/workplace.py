@@ -15,7 +15,7 @@ from jaxleas.surrogates import Identity
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import SteeringPolicy, read_policy
-from jaxleas.training.worlds import training_world
+from jaxleas.training.worlds import training_world, without_files
 
 POLICY_FILE = "policy.npz"
 
@@ -76,11 +76,14 @@ class Workplace:
 
     @cached_property
     def ground(self) -> Ground:
-        """The training terrain, made when first needed."""
+        """The generated training terrain, made when first needed.
+
+        Terrain files are left out: planners want surfaces, and files never judge.
+        """
         terrain = self.run_config.terrain
         seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
         scenes = tuple(generate_arena(terrain.generator, seed).scene for seed in seeds)
-        return Ground(self.env, training_world(self.run_config), scenes)
+        return Ground(self.env, training_world(without_files(self.run_config)), scenes)
 
     @property
     def identity(self) -> Identity:

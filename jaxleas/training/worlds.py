@@ -32,6 +32,12 @@ def training_world(config: RunConfig) -> World:
     return make_world(arenas, terrain.resolution, terrain.shares.model_dump(), own_maps(config))
 
 
+def without_files(config: RunConfig) -> RunConfig:
+    """Return the configuration without its terrain files: on arenas alone, which have surfaces."""
+    terrain = config.terrain.model_copy(update={"files": (), "files_share": 0.0})
+    return config.model_copy(update={"terrain": terrain})
+
+
 def require_own_terrain(config: RunConfig) -> None:
     """Refuse terrain files that cannot be trained on, before a run folder is made.
 
