@@ -9,10 +9,8 @@ from jaxleas.conditions.condition import (
     Judge,
     OnPoints,
     all_of,
-    extended,
     read_from,
     stated_points,
-    union_of_points,
     with_points,
 )
 from jaxleas.conditions.exact import (
@@ -23,6 +21,7 @@ from jaxleas.conditions.exact import (
 )
 from jaxleas.conditions.footprint import footprint_points, is_under_root
 from jaxleas.conditions.foresight import Foresight, LookAround, Pick, everyone
+from jaxleas.conditions.points import extended, union_of_points
 from jaxleas.conditions.reachability import (
     Reachability,
     StrictReachability,

@@ -4,6 +4,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
@@ -11,7 +13,7 @@ from jaxleas.conditions.condition import Condition, all_of, stated_points
 from jaxleas.conditions.foresight import Foresight
 from jaxleas.configuration.registry import Registry
 from jaxleas.robots import Robot
-from jaxleas.types import InputError
+from jaxleas.types import InputError, RootMotion
 
 if TYPE_CHECKING:
     from jaxleas.conditions.named import Named
@@ -117,4 +119,15 @@ def _require_condition(name: str, made: Any) -> None:
         raise InputError(
             f"{KEY}: {name} states points of shape {shape}; finite points [P, 2] in the root frame"
             " [m] would do"
+        )
+    robots = 2
+    heights, motion = (
+        jnp.zeros((robots, shape[0])),
+        RootMotion(jnp.zeros((robots, 3)), jnp.zeros((robots, 3)), jnp.zeros(robots)),
+    )
+    margin = jax.eval_shape(made, heights, motion)
+    if getattr(margin, "shape", None) != (robots,):
+        raise InputError(
+            f"{KEY}: {name} answers {robots} robots with {margin}; one margin for each, for any"
+            " batch of robots, would do"
         )

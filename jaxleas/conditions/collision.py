@@ -9,7 +9,8 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.conditions.condition import MARGIN_LIMIT, Condition, columns_of
+from jaxleas.conditions.condition import MARGIN_LIMIT, Condition
+from jaxleas.conditions.points import columns_of
 from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 

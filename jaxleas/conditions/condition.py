@@ -7,8 +7,9 @@ from typing import Any, Protocol
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
+from jaxleas.conditions.points import Points, columns_of, union_of_points
 from jaxleas.types import InputError, RootMotion
 
 VOID_IN_ROOT = -100.0
@@ -16,9 +17,6 @@ VOID_IN_ROOT = -100.0
 
 MARGIN_LIMIT = 1.0
 """Margins are clipped to +- this [m]: always finite, even over the void."""
-
-Points = Float[np.ndarray, "P 2"]
-"""Points in the root frame [m]."""
 
 Judge = Callable[[Array, RootMotion], Array]
 """Heights [*batch, P] and a root motion to a margin [*batch]; says nothing of its points. Such a
@@ -81,7 +79,7 @@ def with_points(condition: Condition | Judge, points: Points) -> Condition:
     return condition  # type: ignore[return-value]
 
 
-def all_of(*conditions: Any, order: Points | None = None) -> Any:
+def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
     """Return the condition that holds where all of `conditions` do: the least of their margins.
 
     It reads the union of their points. A plain callable states no points: it is given all the
@@ -103,7 +101,7 @@ def all_of(*conditions: Any, order: Points | None = None) -> Any:
         raise InputError("all_of needs at least one condition")
     stated = [each for each in map(stated_points, conditions) if each is not None]
     if not stated:
-        return _least(conditions)  # type: ignore[arg-type]
+        return _least(conditions)
     points = union_of_points(stated, order)
     if len(stated) < len(conditions):
         if not all(np.array_equal(each, stated[0]) for each in stated):
@@ -181,50 +179,3 @@ def read_from(points: Points, condition: Condition) -> Condition:
         return rewritten(points)
     columns = columns_of(condition.points_in_root, points)
     return OnPoints(points, lambda heights, motion: condition(heights[..., columns], motion))
-
-
-def union_of_points(several: Sequence[Points], order: Points | None = None) -> Points:
-    """Return the points of several sets, each once.
-
-    Args:
-        several: sets of points in the root frame [m].
-        order: points in whose order the union is listed as far as it lies among them [m]; what
-            lies elsewhere follows in the order of the sets.
-    """
-    wanted = {_key(point): point for points in several for point in points}
-    first = [wanted.pop(_key(point)) for point in _none_if(order) if _key(point) in wanted]
-    return np.array([*first, *wanted.values()], dtype=np.float64).reshape(-1, 2)
-
-
-def extended(points: Points, further: Points) -> Points:
-    """Return `points`, and behind them those of `further` that are not among them."""
-    known = {_key(point) for point in points}
-    new = [point for point in union_of_points([further]) if _key(point) not in known]
-    return np.concatenate([points, np.array(new).reshape(-1, 2)]) if new else points
-
-
-def columns_of(wanted: Points, points: Points) -> Int[np.ndarray, " wanted"]:
-    """Return where each of `wanted` stands in `points`.
-
-    Raises:
-        InputError: one of them is not there.
-    """
-    places: dict[tuple[float, ...], int] = {}
-    for index, point in enumerate(points):
-        places.setdefault(_key(point), index)
-    missing = [point for point in wanted if _key(point) not in places]
-    if missing:
-        x, y = missing[0]
-        raise InputError(
-            f"the condition reads the point ({x:g}, {y:g}) m, which is not among the {len(points)}"
-            " points whose heights are known"
-        )
-    return np.array([places[_key(point)] for point in wanted], dtype=np.int64)
-
-
-def _key(point: np.ndarray) -> tuple[float, ...]:
-    return tuple(float(value) + 0.0 for value in point)  # -0.0 is 0.0
-
-
-def _none_if(points: Points | None) -> Points:
-    return np.zeros((0, 2)) if points is None else points

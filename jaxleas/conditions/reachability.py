@@ -10,8 +10,9 @@ import numpy as np
 from jax import Array
 from jaxtyping import Bool, Float
 
-from jaxleas.conditions.condition import MARGIN_LIMIT, Condition, columns_of
+from jaxleas.conditions.condition import MARGIN_LIMIT, Condition
 from jaxleas.conditions.footprint import is_under_root
+from jaxleas.conditions.points import columns_of
 from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 

@@ -45,6 +45,16 @@ class Odd(Deaf):
     points_in_root = [[0.0, 0.0, 0.0]]
 
 
+class One:
+    points_in_root = [[0.0, 0.0]]
+
+    def __init__(self, robot, candidates):
+        pass
+
+    def __call__(self, heights_in_root, motion):
+        return heights_in_root.max()
+
+
 class Memory:
     def __init__(self, robot, candidates):
         pass
@@ -170,6 +180,7 @@ def test_names_that_mean_nothing_are_refused_when_they_are_read(folder, conditio
         ([*STANDARD, {"surrogate": "gone.npz"}], r"env\.conditions: gone\.npz does not exist"),
         ([*STANDARD, {"surrogate": "run.yaml"}], r"env\.conditions: run\.yaml is not a readable"),
         (["my_conditions:Deaf"], "my_conditions:Deaf makes a condition without points_in_root"),
+        (["my_conditions:One"], r"One answers 2 robots with .*one margin for each"),
         (["my_conditions:Odd"], r"points of shape \(1, 3\)"),
         (["my_conditions:Memory"], "no condition judges a configuration by itself"),
         (

@@ -85,7 +85,7 @@ class SteeringEnv:
         self.foresight = foresight
         # What a step is judged by: conditions ask for few of the points.
         self._judge = with_points(condition, sampled)
-        self._judged = self._judge.points_in_root
+        self._judged = np.asarray(self._judge.points_in_root, np.float64)
         self.points_in_root = extended(sampled, self._judged)
         self.condition = read_from(self.points_in_root, self._judge)
 
