@@ -195,7 +195,7 @@ def exact_success(policy: Path, judge: Judge, suites: Sequence[Suite]) -> float:
         suites: suites to be walked.
     """
     found = load_policy(policy)
-    env = SteeringEnv(found.config)
+    env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
     shares = [
         cell.planned or 0.0
