@@ -8,12 +8,17 @@ import numpy as np
 from jaxleas.files import read_json, write_json
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.polytopes import Polytope
+from jaxleas.robots.effector import Effector
 from jaxleas.robots.robot import Limb, Robot
 from jaxleas.types.errors import InputError
+from jaxleas.types.poses import Pose
 
 
 def read_robot(path: str | Path) -> Robot:
     """Return the robot described by a JSON file.
+
+    Files without `effector`, `reference`, `start_heights` or `steps` are those of earlier versions:
+    their robots get feet of the file's `foot_half_size` and `friction`.
 
     Raises:
         InputError: the file is missing, is not JSON, or a key is missing or malformed.
@@ -21,6 +26,10 @@ def read_robot(path: str | Path) -> Robot:
     described = read_json(path)
     try:
         half_length, half_width = described["foot_half_size"]
+        optional = {}
+        if "start_heights" in described:
+            low, high = described["start_heights"]
+            optional["start_heights"] = (float(low), float(high))
         return Robot(
             name=str(described["name"]),
             limbs=tuple(_limb(limb) for limb in described["limbs"]),
@@ -30,10 +39,17 @@ def read_robot(path: str | Path) -> Robot:
             mass=float(described["mass"]),
             friction=float(described["friction"]),
             foot_half_size=(float(half_length), float(half_width)),
+            steps={
+                str(name): Polytope(_numbers(each["A"]), _numbers(each["b"]))
+                for name, each in described.get("steps", {}).items()
+            },
+            **optional,
         )
     except KeyError as error:
         raise InputError(f"{path} lacks the key {error}, which a robot needs") from error
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"{path} does not describe a robot: {error}") from error
+    except InputError as error:
         raise InputError(f"{path} does not describe a robot: {error}") from error
 
 
@@ -47,20 +63,72 @@ def write_robot(path: str | Path, robot: Robot, **notes: Any) -> None:
         "root_height": robot.root_height,
         "walking_height": robot.walking_height,
         "foot_half_size": list(robot.foot_half_size),
+        "start_heights": list(robot.start_heights),
         "trunk": [{"low": list(box.low), "high": list(box.high)} for box in robot.trunk],
         "limbs": [
             {
                 "name": limb.name,
+                "effector": _effector_to_json(effector),
+                "reference": reference.tolist(),
                 "normals": limb.range_of_motion.normals.tolist(),
                 "offsets": limb.range_of_motion.offsets.tolist(),
             }
-            for limb in robot.limbs
+            for limb, effector, reference in zip(
+                robot.limbs, robot.effectors, robot.references, strict=True
+            )
         ],
+        "steps": {
+            name: {"A": each.normals.tolist(), "b": each.offsets.tolist()}
+            for name, each in robot.steps.items()
+        },
     }
     write_json(path, described)
 
 
 def _limb(described: dict[str, Any]) -> Limb:
-    normals = np.asarray(described["normals"], dtype=np.float64)
-    offsets = np.asarray(described["offsets"], dtype=np.float64)
-    return Limb(str(described["name"]), Polytope(normals, offsets))
+    effector, reference = described.get("effector"), described.get("reference")
+    if reference is not None:
+        x, y, z = _numbers(reference)
+        reference = (float(x), float(y), float(z))
+    return Limb(
+        str(described["name"]),
+        Polytope(_numbers(described["normals"]), _numbers(described["offsets"])),
+        None if effector is None else _effector(effector),
+        reference,
+    )
+
+
+def _effector(described: dict[str, Any]) -> Effector:
+    half_length, half_width = described["half_size"]
+    limit, frame = described.get("force_limit"), described.get("frame")
+    placed = {}
+    if frame is not None:
+        placed["frame"] = Pose(_numbers(frame["position"]), _numbers(frame["quaternion"]))
+    return Effector(
+        name=str(described["name"]),
+        kind=described["kind"],
+        half_size=(float(half_length), float(half_width)),
+        friction=float(described["friction"]),
+        force_limit=None if limit is None else float(limit),
+        link=str(described.get("link", "")),
+        **placed,
+    )
+
+
+def _effector_to_json(effector: Effector) -> dict[str, Any]:
+    return {
+        "name": effector.name,
+        "kind": effector.kind,
+        "half_size": list(effector.half_size),
+        "friction": effector.friction,
+        "force_limit": effector.force_limit,
+        "link": effector.link,
+        "frame": {
+            "position": effector.frame.position.tolist(),
+            "quaternion": effector.frame.quaternion.tolist(),
+        },
+    }
+
+
+def _numbers(value: Any) -> np.ndarray:
+    return np.asarray(value, dtype=np.float64)
