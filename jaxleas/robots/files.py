@@ -9,9 +9,16 @@ from jaxleas.files import read_json, write_json
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.robots.effector import Effector
+from jaxleas.robots.limb_files import (
+    limb_model_from_json,
+    limb_model_to_json,
+    numbers,
+    pose_from_json,
+    pose_to_json,
+)
+from jaxleas.robots.limb_model import Body, LimbModel
 from jaxleas.robots.robot import Limb, Robot
 from jaxleas.types.errors import InputError
-from jaxleas.types.poses import Pose
 
 
 def read_robot(path: str | Path) -> Robot:
@@ -32,7 +39,7 @@ def read_robot(path: str | Path) -> Robot:
             optional["start_heights"] = (float(low), float(high))
         return Robot(
             name=str(described["name"]),
-            limbs=tuple(_limb(limb) for limb in described["limbs"]),
+            limbs=_limbs(described["limbs"]),
             trunk=tuple(Box(tuple(box["low"]), tuple(box["high"])) for box in described["trunk"]),
             root_height=float(described["root_height"]),
             walking_height=float(described["walking_height"]),
@@ -40,9 +47,10 @@ def read_robot(path: str | Path) -> Robot:
             friction=float(described["friction"]),
             foot_half_size=(float(half_length), float(half_width)),
             steps={
-                str(name): Polytope(_numbers(each["A"]), _numbers(each["b"]))
+                str(name): Polytope(numbers(each["A"]), numbers(each["b"]))
                 for name, each in described.get("steps", {}).items()
             },
+            body=_body(described.get("body")),
             **optional,
         )
     except KeyError as error:
@@ -72,6 +80,7 @@ def write_robot(path: str | Path, robot: Robot, **notes: Any) -> None:
                 "reference": reference.tolist(),
                 "normals": limb.range_of_motion.normals.tolist(),
                 "offsets": limb.range_of_motion.offsets.tolist(),
+                **_model_to_json(limb, robot.limbs),
             }
             for limb, effector, reference in zip(
                 robot.limbs, robot.effectors, robot.references, strict=True
@@ -82,20 +91,58 @@ def write_robot(path: str | Path, robot: Robot, **notes: Any) -> None:
             for name, each in robot.steps.items()
         },
     }
+    if robot.body is not None:
+        described["body"] = {"mass": robot.body.mass, "com": robot.body.com.tolist()}
     write_json(path, described)
 
 
-def _limb(described: dict[str, Any]) -> Limb:
+def _limbs(described: list[dict[str, Any]]) -> tuple[Limb, ...]:
+    models: dict[str, LimbModel] = {}
+    limbs = []
+    for each in described:
+        model, mirrored = each.get("model"), each.get("mirror_of")
+        if model is not None:
+            models[str(each["name"])] = limb_model_from_json(model)
+        elif mirrored is not None:
+            if mirrored not in models:
+                raise ValueError(f"mirror_of: no limb {mirrored!r:.60} with a 'model' comes before")
+            models[str(each["name"])] = models[mirrored].mirrored()
+        limbs.append(_limb(each, models.get(str(each["name"]))))
+    return tuple(limbs)
+
+
+def _limb(described: dict[str, Any], model: LimbModel | None) -> Limb:
     effector, reference = described.get("effector"), described.get("reference")
     if reference is not None:
-        x, y, z = _numbers(reference)
+        x, y, z = numbers(reference)
         reference = (float(x), float(y), float(z))
     return Limb(
         str(described["name"]),
-        Polytope(_numbers(described["normals"]), _numbers(described["offsets"])),
+        Polytope(numbers(described["normals"]), numbers(described["offsets"])),
         None if effector is None else _effector(effector),
         reference,
+        model,
     )
+
+
+def _model_to_json(limb: Limb, limbs: tuple[Limb, ...]) -> dict[str, Any]:
+    """Return a limb's model, or the name of the limb before it that it is the mirror image of."""
+    if limb.model is None:
+        return {}
+    content = limb_model_to_json(limb.model)
+    for other in limbs[: limbs.index(limb)]:
+        if other.model and limb_model_to_json(other.model.mirrored()) == content:
+            return {"mirror_of": other.name}
+    return {"model": content}
+
+
+def _body(described: dict[str, Any] | None) -> Body | None:
+    if described is None:
+        return None
+    com = numbers(described["com"])
+    if com.shape != (3,) or not np.isfinite(com).all():
+        raise ValueError("the body's com must be three finite numbers")
+    return Body(float(described["mass"]), com)
 
 
 def _effector(described: dict[str, Any]) -> Effector:
@@ -103,7 +150,7 @@ def _effector(described: dict[str, Any]) -> Effector:
     limit, frame = described.get("force_limit"), described.get("frame")
     placed = {}
     if frame is not None:
-        placed["frame"] = Pose(_numbers(frame["position"]), _numbers(frame["quaternion"]))
+        placed["frame"] = pose_from_json(frame)
     return Effector(
         name=str(described["name"]),
         kind=described["kind"],
@@ -123,12 +170,5 @@ def _effector_to_json(effector: Effector) -> dict[str, Any]:
         "friction": effector.friction,
         "force_limit": effector.force_limit,
         "link": effector.link,
-        "frame": {
-            "position": effector.frame.position.tolist(),
-            "quaternion": effector.frame.quaternion.tolist(),
-        },
+        "frame": pose_to_json(effector.frame),
     }
-
-
-def _numbers(value: Any) -> np.ndarray:
-    return np.asarray(value, dtype=np.float64)

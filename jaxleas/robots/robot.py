@@ -11,6 +11,7 @@ from jaxtyping import Float
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.robots.effector import Effector, foot_of_limb
+from jaxleas.robots.limb_model import Body, LimbModel
 from jaxleas.types.errors import InputError
 
 
@@ -27,12 +28,15 @@ class Limb:
         reference: middle of the effector in the root frame, in the reference configuration [m];
             None stands for the middle of the range of motion, at the reference height below the
             root for a foot.
+        model: its joints, masses and shapes, for planners that move joints; None where the robot's
+            file has none.
     """
 
     name: str
     range_of_motion: Polytope
     effector: Effector | None = None
     reference: tuple[float, float, float] | None = None
+    model: LimbModel | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +56,8 @@ class Robot:
         steps: polytopes of steps, by name: "RF_in_LF" is where the right foot can be in the frame
             of the left one, "COM_in_LF" where the centre of mass can be [m]; empty where the
             robot's file has none.
+        body: mass of all that is no limb, for planners that move joints; None where the robot's
+            file has none.
 
     Raises:
         InputError: two limbs or two effectors share a name, or the start heights are no interval.
@@ -67,6 +73,7 @@ class Robot:
     foot_half_size: tuple[float, float]
     start_heights: tuple[float, float] = (-0.20, 0.07)
     steps: Mapping[str, Polytope] = field(default_factory=dict)
+    body: Body | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "limbs", tuple(self._completed(limb) for limb in self.limbs))
