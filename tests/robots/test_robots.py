@@ -21,8 +21,24 @@ def talos():
 
 def test_talos_is_found_by_name_and_others_are_not(talos):
     assert load_robot("talos") is talos
-    with pytest.raises(InputError, match="did you mean talos"):
+    with pytest.raises(InputError, match=r"no robot 'Talo', only .*talos.*did you mean talos\?"):
         load_robot("Talo")
+
+
+def test_robots_of_ones_own_are_found_by_name_and_by_path(talos, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    own = replace(talos, name="walker")
+    Path("robots").mkdir()
+    write_robot("robots/walker.json", own)
+    write_robot("elsewhere.json", own)
+    assert load_robot("walker").name == load_robot("elsewhere.json").name == "walker"
+    with pytest.raises(InputError, match=r"only .*walker.*did you mean walker\?"):
+        load_robot("walter")
+    Path("robots/runner.json").write_bytes(Path("elsewhere.json").read_bytes())
+    with pytest.raises(InputError, match=r"describes the robot 'walker'; name the file after it"):
+        load_robot("runner")
+    with pytest.raises(InputError, match=r"missing\.json"):
+        load_robot("missing.json")
 
 
 def test_legs_are_mirror_images(talos):
