@@ -1,7 +1,7 @@
 """The functions behind `jaxleas plan`, `check` and `contacts`."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
@@ -9,6 +9,7 @@ from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
 from jaxleas.contacts.planners import PLANNERS, Cost, plan_mip, plan_sl1m
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
+from jaxleas.contacts.sl1m import MAX_COMBINATIONS
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
@@ -36,7 +37,7 @@ def plan(
     time_limit: float = 60.0,
     cost: Cost = "none",
     without_guide: bool = False,
-    max_combinations: int = 2000,
+    max_combinations: int | None = None,
     picture: Path | None = None,
 ) -> ContactPlan:
     """Plan contacts for a problem file and write the certified plan.
@@ -48,7 +49,7 @@ def plan(
         time_limit: [s]; a plan not found in time has the status time_limit.
         cost: of the mip: footholds near the guide's reference ones, by L1 or squared distance.
         without_guide: allow every surface in every phase but the last.
-        max_combinations: after which sl1m gives up.
+        max_combinations: after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     _require_writable_names(out, picture)
@@ -56,7 +57,7 @@ def plan(
         changed = {
             "cost": cost != "none",
             "without-guide": without_guide,
-            "max-combinations": max_combinations != 2000,
+            "max-combinations": max_combinations is not None,
         }
         _require_none_of(changed)
         asked = read_problem(problem)
@@ -156,13 +157,13 @@ def contacts(
     problem: Path | None = None,
     query: int = 0,
     robot: str = "talos",
-    model: Model = "two_com",
+    model: Model | None = None,
     every: int | None = None,
-    candidates: Literal["window", "rom"] = "window",
-    window: float = 0.8,
+    candidates: Literal["window", "rom"] | None = None,
+    window: float | None = None,
     time_limit: float = 60.0,
     cost: Cost = "none",
-    max_combinations: int = 2000,
+    max_combinations: int | None = None,
     picture: Path | None = None,
 ) -> ContactPlan:
     """Plan contacts along a guide path through a scene.
@@ -175,13 +176,14 @@ def contacts(
         problem: write the contact problem here too, .json (mip and sl1m).
         query: which path of the file.
         robot: whose step polytopes are used.
-        model: two_com (with the centre of mass) or feet.
+        model: two_com (with the centre of mass, the default) or feet.
         every: keep one configuration of so many; 14 for mip and sl1m (a step each), 5 for sampling.
-        candidates: what lies in a window around the root, or in the moving leg's range of motion.
-        window: the window's edge [m].
+        candidates: what lies in a window around the root (the default), or rom: in the moving
+            leg's range of motion.
+        window: the window's edge, 0.8 by default [m].
         time_limit: [s]; a plan not found in time has the status time_limit.
         cost: of the mip: footholds near the guide's reference ones, by L1 or squared distance.
-        max_combinations: after which sl1m gives up.
+        max_combinations: after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     from jaxleas.contacts.from_guide import problem_from_guide
@@ -193,23 +195,17 @@ def contacts(
     if planner == "sampling":
         changed = {
             "problem": problem is not None,
-            "model": model != "two_com",
-            "candidates": candidates != "window",
-            "window": window != 0.8,
+            "model": model is not None,
+            "candidates": candidates is not None,
+            "window": window is not None,
             "cost": cost != "none",
-            "max-combinations": max_combinations != 2000,
+            "max-combinations": max_combinations is not None,
         }
         _require_none_of(changed)
         return _sample_and_write(followed, crossed, robot, kept, time_limit, out, picture)
-    made = problem_from_guide(
-        followed,
-        crossed,
-        robot=robot,
-        model=model,
-        every=kept,
-        candidates=candidates,
-        window=window,
-    )
+    options: dict[str, Any] = {"model": model, "candidates": candidates, "window": window}
+    chosen = {name: each for name, each in options.items() if each is not None}
+    made = problem_from_guide(followed, crossed, robot=robot, every=kept, **chosen)
     if problem is not None:
         write_problem(problem, made)
     return _plan_and_write(made, planner, out, time_limit, cost, max_combinations, picture)
@@ -276,15 +272,16 @@ def _plan_and_write(
     out: Path,
     time_limit: float,
     cost: Cost,
-    max_combinations: int,
+    max_combinations: int | None,
     picture: Path | None,
 ) -> ContactPlan:
     if planner == "sl1m":
         if cost != "none":
             raise InputError("a cost is for the mip planner; sl1m's cost is the L1 norm itself")
-        found = plan_sl1m(problem, time_limit=time_limit, max_combinations=max_combinations)
+        most = MAX_COMBINATIONS if max_combinations is None else max_combinations
+        found = plan_sl1m(problem, time_limit=time_limit, max_combinations=most)
     else:
-        if max_combinations != 2000:
+        if max_combinations is not None:
             raise InputError("--max-combinations is for the sl1m planner; mip has no such limit")
         found = plan_mip(problem, time_limit=time_limit, cost=cost)
     write_plan(out, found)

@@ -12,6 +12,7 @@ from jaxleas.contacts.steps import rotation
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.boxes import Box
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.scene import Scene
@@ -97,7 +98,14 @@ def problem_from_guide(
                 len(phases),
             )
         names = [_add(surfaces, parts, len(phases), *each) for each in found]
-        phases.append(Phase(foot, wrap(guide.yaw[index]), tuple(names), guide.position[index]))
+        phases.append(
+            Phase(
+                foot,
+                float(wrap_angle_on_host(guide.yaw[index])),
+                tuple(names),
+                guide.position[index],
+            )
+        )
         foot = "RF" if foot == "LF" else "LF"
     return ContactProblem(
         robot=robot,
@@ -136,11 +144,6 @@ def _add(
         name += "'"
     surfaces[name], parts[name] = part, whole
     return name
-
-
-def wrap(angle: float) -> float:
-    """Return an angle in [-pi, pi) [rad]."""
-    return (float(angle) + math.pi) % (2.0 * math.pi) - math.pi
 
 
 class _Finder:
@@ -189,7 +192,7 @@ def _initial(
     guide: GuidePath, surfaces: dict[str, ContactSurface], robot: Robot
 ) -> dict[str, FootPose]:
     """Stand each foot on the ground nearest to its reference place beside the first root."""
-    yaw, root = wrap(guide.yaw[0]), guide.position[0]
+    yaw, root = float(wrap_angle_on_host(guide.yaw[0])), guide.position[0]
     lowest = min(float(limb.range_of_motion.vertices[:, 2].min()) for limb in robot.limbs)
     poses = {}
     for foot, side in zip(FEET, (BESIDE_ROOT, -BESIDE_ROOT), strict=True):

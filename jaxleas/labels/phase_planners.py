@@ -1,7 +1,7 @@
 """MIP and SL1M as judges: guide path and scene -> contact problem -> verdict (T 5.2.3)."""
 
 import time
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -128,17 +128,13 @@ def _problem(
     }
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
-            path = _rows(path, np.array([0, 0]))
+            path = path[np.array([0, 0])]
         return problem_from_guide(path, scene, **options), None
     except NoGroundError as error:
         if error.phase < 1:
             return None, error
         last = kept_configurations(len(path), settings.keep_every)[error.phase - 1]
-        return problem_from_guide(_rows(path, np.arange(last + 1)), scene, **options), error
-
-
-def _rows(path: GuidePath, rows: np.ndarray) -> GuidePath:
-    return GuidePath(*(getattr(path, each.name)[rows] for each in fields(path)))
+        return problem_from_guide(path[: last + 1], scene, **options), error
 
 
 def _around(scene: Scene, path: GuidePath, window: float) -> Scene:

@@ -4,7 +4,6 @@ from dataclasses import asdict, dataclass, fields
 from functools import cache
 from typing import Any
 
-import numpy as np
 from pydantic import BaseModel, ValidationError, create_model
 
 from jaxleas.types import GuidePath
@@ -84,5 +83,4 @@ def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
     """Return the way of the root up to a configuration for each step [m]; None without step."""
     if steps < 1:
         return None
-    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
-    return float(np.linalg.norm(walked, axis=1).sum() / steps)
+    return path[: last_index + 1].length / steps

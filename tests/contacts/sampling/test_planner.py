@@ -208,3 +208,19 @@ def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
     low = Scene({**middle, "beam": floor(0.8, 1.2, -3.0, 3.0, 0.3)}, touch={"beam": "palms"})
     blocked = plan_contacts(low, path)
     assert not blocked.success, "the shins would go through the beam"
+
+
+@pytest.mark.parametrize(
+    ("scene", "path", "settings", "ending"),
+    [
+        (flat(), straight(1.0), {}, "reached"),
+        (hole(), straight(4.0), {}, "no_contact"),
+        (wall(), straight(4.0), {}, "trunk"),
+        (hole(), straight(4.0, y=2.9), {}, "no_start"),
+        (hole(), straight(4.0), {"max_repositions": 0}, "repositions"),
+    ],
+)
+def test_how_a_plan_ends_is_a_value(scene, path, settings, ending):
+    plan = plan_contacts(scene, path, SamplingSettings(samples=2000, **settings))
+    assert (plan.ending, plan.success) == (ending, ending == "reached")
+    assert bool(plan.reason) != plan.success

@@ -1,0 +1,59 @@
+from jaxleas.evaluation.result_file import CellResult, Evaluation
+from jaxleas.reports.table import percent, plain_table
+
+
+def cell(**changes) -> CellResult:
+    values = {
+        "name": "stairs_up",
+        "yaw": 180.0,
+        "method": "leas_p1",
+        "starts": 1000,
+        "reached": 0.985,
+        "invalid": 0.01,
+        "stopped": 0.005,
+        "low": 0.975,
+        "high": 0.991,
+    }
+    return CellResult.model_validate(values | changes)
+
+
+def evaluation(suite: str, *cells: CellResult) -> Evaluation:
+    return Evaluation(
+        suite=suite, policy="p", robot="talos", seed=0, created="2026-01-01", cells=cells
+    )
+
+
+def test_only_everything_is_a_hundred_percent():
+    assert percent(1.0) == "100.0 %"
+    assert percent(0.99996) == "99.9 %"
+    assert percent(0.996, 0) == "99 %"
+    assert percent(0.125) == "12.5 %"
+    assert percent(None) == "-"
+
+
+def test_the_thesis_stands_beside_our_rows_only():
+    text = plain_table(evaluation("transitions", cell(), cell(method="rb_lin")))
+    ours, baseline = text.splitlines()[-2:]
+    assert ours.split()[:4] == ["stairs", "up", "180°", "LEAS-P1"]
+    assert ours.endswith("97 %")
+    assert "98.5 %" in ours
+    assert baseline.endswith("-")
+
+
+def test_near_and_far_are_of_the_fraction_that_counts():
+    area = {"near": {"starts": 500, "reached": 0.25, "invalid": 0.125}}
+    both = area | {"far": area["near"]}
+    crossing = plain_table(evaluation("transitions", cell(areas=both)))
+    assert crossing.count("25.0 %") == 2
+    stopping = plain_table(evaluation("dead_end", cell(areas=both, expectation="stop", high=0.99)))
+    assert stopping.count("87.5 %") == 2
+
+
+def test_columns_without_a_word_are_left_out():
+    text = plain_table(
+        evaluation("dead_end", cell(name="void", expectation="stop", low=0.98, high=1))
+    )
+    assert "thesis" not in text
+    assert "near" not in text
+    assert "stay valid" in text
+    assert len({len(line) for line in text.splitlines()[1:3]}) == 1
