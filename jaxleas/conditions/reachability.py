@@ -46,7 +46,7 @@ class Reachability:
             InputError: no candidate that counts lies over any leg's range of motion.
         """
         considered = candidates[self._counts(candidates)]
-        reaches = [limb.range_of_motion.z_interval(considered) for limb in robot.limbs]
+        reaches = [limb.range_of_motion.z_interval(considered) for limb in robot.legs]
         kept = np.any([np.isfinite(low) for low, _ in reaches], axis=0)
         if not kept.any():
             raise InputError(

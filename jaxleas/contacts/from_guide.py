@@ -83,7 +83,7 @@ def problem_from_guide(
     described = load_robot(robot)
     surfaces = {
         name: make_surface(vertices, f"surface '{name}' of the scene")
-        for name, vertices in scene.surfaces.items()
+        for name, vertices in scene.walkable.items()
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)

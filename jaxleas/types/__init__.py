@@ -9,18 +9,25 @@ from typing import TYPE_CHECKING, Any
 from jaxleas.types.errors import InputError, JaxleasError
 from jaxleas.types.ground import NO_GROUND, is_ground
 from jaxleas.types.paths import GuidePath, cut_walks
+from jaxleas.types.poses import Pose, RootPose
 from jaxleas.types.queries import Query
+from jaxleas.types.stances import Contact, Stance, SupportPhase
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
 __all__ = [
     "NO_GROUND",
+    "Contact",
     "GuidePath",
     "InputError",
     "JaxleasError",
+    "Pose",
     "Query",
     "RootMotion",
+    "RootPose",
+    "Stance",
+    "SupportPhase",
     "cut_walks",
     "is_ground",
 ]

@@ -17,8 +17,8 @@ from jaxleas.contacts.posture_model import about, chain
 from jaxleas.contacts.problem import FootPose
 from jaxleas.contacts.sampling.planner import _Walk
 from jaxleas.files import write_json, write_npz
-from jaxleas.robots.leg_kinematics import leg_posture
-from jaxleas.robots.legs import MIRRORED_JOINTS, load_talos_legs
+from jaxleas.robots import load_talos
+from jaxleas.robots.legs import leg_posture, load_talos_legs
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
@@ -133,6 +133,9 @@ def test_a_plan_for_another_guide_or_scene_is_refused(climb) -> None:
         certify_postures(climb, straight(3.0, climbing=True), SCENE)
     with pytest.raises(InputError, match="stands on 'bottom', not in this scene"):
         certify_postures(climb, GUIDE, flat())
+    held = replace(SCENE, touch={"bottom": "palms"})
+    with pytest.raises(InputError, match="stands on 'bottom', which feet may not touch"):
+        certify_postures(climb, GUIDE, held)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -140,11 +143,12 @@ def test_the_joint_by_joint_chain_is_the_legs_kinematics(side: float) -> None:
     legs = load_talos_legs()
     mirror = np.diag([1.0, side, 1.0])
     for angles in np.random.default_rng(0).uniform(legs.lower, legs.upper, (20, 6)):
-        own = angles if side > 0 else angles * MIRRORED_JOINTS
-        frames, origins, sole, turn = chain(legs, own, side)
+        own = angles if side > 0 else angles * legs.mirror_signs
+        model = load_talos().limbs[0 if side > 0 else 1].model
+        frames, origins, sole, turn = chain(model, own)
         posture = leg_posture(legs, angles)
-        np.testing.assert_allclose(sole, mirror @ posture.sole, atol=1e-12)
-        np.testing.assert_allclose(turn, mirror @ posture.foot @ mirror, atol=1e-12)
+        np.testing.assert_allclose(sole, mirror @ posture.tip, atol=1e-12)
+        np.testing.assert_allclose(turn, mirror @ posture.tip_rotation @ mirror, atol=1e-12)
         np.testing.assert_allclose(origins, posture.origins @ mirror, atol=1e-12)
         np.testing.assert_allclose(np.linalg.det(frames), 1.0, atol=1e-12)
     np.testing.assert_allclose(about("z", math.pi / 2) @ [1, 0, 0], [0, 1, 0], atol=1e-12)

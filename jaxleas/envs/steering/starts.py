@@ -13,13 +13,9 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import OwnStarts, draw_own_starts
 from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
 from jaxleas.envs.steering.world import World
-from jaxleas.terrain.atlas import VOID
 from jaxleas.types import RootMotion
+from jaxleas.types.ground import is_ground
 
-# How far below and above its walking height the root may stand when an episode starts [m]: over
-# level ground all of this is valid. A low root is what stairs down ask for, and a policy that has
-# never been low does not find out; users' starts are not exact either.
-HEIGHT_SPREAD = (-0.20, 0.07)
 FOREVER = 2**30  # steps
 
 
@@ -76,7 +72,7 @@ def draw_starts(
     arrives = env.condition(arrival_heights, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
     if world.own is not None and own is not None:
-        over_ground = world.atlas.height_at(own.map_index, own.start[:, None])[:, 0] > VOID
+        over_ground = is_ground(world.atlas.height_at(own.map_index, own.start[:, None])[:, 0])
         valid &= (arrives & over_ground) | ~own.chosen
     return Starts(state, valid, world.kind[link])
 
@@ -111,7 +107,9 @@ def _draw_motion(
     # Half of the robots stand; the others walk the way they look (I sec. IV-B).
     speed = jnp.maximum(jax.random.uniform(speed_key, shape, minval=-1.0), 0.0)
     speed = speed * env.config.desired_speed
-    low, high = HEIGHT_SPREAD
+    # A low root is what stairs down ask for, and a policy that has never been low does not find
+    # out; users' starts are not exact either.
+    low, high = env.robot.start_heights
     spread = jax.random.uniform(height_key, (*shape, 1), minval=low, maxval=high)
     return RootMotion(
         position=_stand(env, world, world.map_index[link], horizontal).at[:, 2:].add(spread),
@@ -126,7 +124,7 @@ def _put_on_files(
     env: SteeringEnv, world: World, own: OwnStarts, plan: Plan, motion: RootMotion, key: Array
 ) -> tuple[Plan, RootMotion]:
     """Return plans and motions with those on files put in where a candidate starts on one."""
-    low, high = HEIGHT_SPREAD
+    low, high = env.robot.start_heights
     spread = jax.random.uniform(key, (len(own.chosen), 1), minval=low, maxval=high)
     position = _stand(env, world, own.map_index, own.start).at[:, 2:].add(spread)
     plan = plan.replace(  # type: ignore[attr-defined]
@@ -154,7 +152,7 @@ def _stand(
     """Return root positions at walking height over the ground."""
     ground = world.atlas.height_at(map_index, horizontal[:, None, :])
     # A root measured from the void would see the void at walking height and pass for valid.
-    ground = jnp.where(ground <= VOID, 0.0, ground)
+    ground = jnp.where(is_ground(ground), ground, 0.0)
     return jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
 
 

@@ -5,15 +5,14 @@ import pytest
 
 from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many, plan_over
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
-from jaxleas.dynamics import equilibrium_robustness
+from jaxleas.dynamics import ContactPoints, robustness_of
 from jaxleas.robots import load_talos
-from jaxleas.robots.leg_kinematics import leg_angles
-from jaxleas.robots.legs import load_talos_legs
+from jaxleas.robots.legs import leg_angles, load_talos_legs
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import InputError
-from tests.contacts.sampling.worlds import flat, hole, stairs, straight, wall
+from tests.contacts.sampling.worlds import flat, floor, hole, stairs, straight, wall
 
 
 @pytest.fixture(scope="module")
@@ -71,13 +70,15 @@ def test_robustness_is_that_of_the_linear_program(climb):
                     if abs(reach[axis]) > 1e-12:
                         share = min(share, room / reach[axis])
                 points.append(sole + share * reach)
-        expected = equilibrium_robustness(
+        axes = np.repeat(plan.rotations[which], 4, axis=0)
+        contacts = ContactPoints(
             np.array(points),
-            np.repeat(plan.rotations[which][:, :, 2], 4, axis=0),
-            plan.com[which],
-            mass=load_talos_legs().mass,
+            axes[:, :, 2],
             friction=0.5,
+            ahead=axes[:, :, 0],
+            generators=SamplingSettings().friction_generators,
         )
+        expected = robustness_of(contacts, plan.com[which], mass=load_talos_legs().mass)
         np.testing.assert_allclose(plan.robustness[which], expected, rtol=1e-6)
 
 
@@ -191,6 +192,22 @@ def test_a_bad_guide_path_is_refused(change, sentence):
 def test_a_scene_without_surfaces_is_refused():
     with pytest.raises(InputError, match="no surfaces"):
         plan_contacts(Scene({}), straight(1.0))
+
+
+def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
+    floor_alone, path = flat(), straight(2.0)
+    middle = dict(floor_alone.surfaces)
+    ceiling = floor(-1.0, 9.0, -3.0, 3.0, 2.5)[::-1]
+    railing = floor(-1.0, 9.0, 1.0, 1.1, 0.9)
+    touch = {"railing": "palms"}
+    more = Scene({**middle, "ceiling": ceiling, "railing": railing}, touch=touch)
+    plain, furnished = plan_contacts(floor_alone, path), plan_contacts(more, path)
+    assert plain.success
+    assert furnished.success
+    np.testing.assert_allclose(furnished.soles, plain.soles)
+    low = Scene({**middle, "beam": floor(0.8, 1.2, -3.0, 3.0, 0.3)}, touch={"beam": "palms"})
+    blocked = plan_contacts(low, path)
+    assert not blocked.success, "the shins would go through the beam"
 
 
 @pytest.mark.parametrize(
