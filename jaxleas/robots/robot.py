@@ -41,7 +41,7 @@ class Limb:
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A legged robot as the steering method and the contact planners see it.
+    """A legged robot as steering methods and contact planners see it.
 
     Attributes:
         name: name by which `load_robot` finds it.
