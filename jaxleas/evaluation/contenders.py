@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jaxleas.evaluation.exact import Walker, walker
-from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
+from jaxleas.evaluation.examination import POLICY, Candidate
 from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.roadmap_walker import roadmap_walker
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
+from jaxleas.guide.registry import BASELINES
 from jaxleas.guide.roadmaps.search import import_ompl
 from jaxleas.types.errors import InputError
 

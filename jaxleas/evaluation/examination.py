@@ -15,13 +15,11 @@ from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.rb_kino import rb_kino
-from jaxleas.guide.rb_lin import rb_lin
+from jaxleas.guide.registry import BASELINES
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types.errors import InputError
 
 POLICY = "leas_p1"
-BASELINES = {"rb_lin": rb_lin, "rb_kino": rb_kino}
 
 
 @dataclass(frozen=True)
@@ -58,7 +56,7 @@ def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidat
     limits, speed = env.config.limits, env.config.desired_speed
     methods = {
         POLICY: leas(env, policy),
-        **{name: make(limits, speed) for name, make in BASELINES.items()},
+        **{name: each.make(limits, speed) for name, each in BASELINES.items()},
     }
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()

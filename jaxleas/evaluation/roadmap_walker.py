@@ -9,7 +9,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Walker
 from jaxleas.evaluation.judge import Walk
 from jaxleas.evaluation.starts import Grounds, Starts
-from jaxleas.guide.navigation_command import Steering, make_navigator
+from jaxleas.guide.navigation_command import make_navigator
 from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
 from jaxleas.guide.roadmaps.navigation import motion_at
 from jaxleas.guide.steering_method import SteeringMethod
@@ -20,7 +20,7 @@ CONNECTIONS = 200
 HOURS = 36_000.0
 
 
-def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: Steering) -> Walker:
+def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: str) -> Walker:
     """Return a steering method that looks for waypoints by RRT where it needs them.
 
     Args:

@@ -1,8 +1,9 @@
 """What cells and methods are called for people."""
 
+from jaxleas.guide.registry import BASELINES
+
 METHOD_TITLES = {
-    "rb_lin": "RB-Lin",
-    "rb_kino": "RB-Kino",
+    **{name: each.title for name, each in BASELINES.items()},
     "rb_kino_rrt": "RB-Kino + RRT",
     "leas_p1": "LEAS-P1",
     "leas_p2_sampling": "LEAS-P2 (sampling)",

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from jaxleas.training.policy import Policy
     from jaxleas.types import Query
 
-Steering = Literal["leas", "kino", "lin"]
-
 MAX_CONFIGURATIONS = 20_000_000  # of all paths together: about a gigabyte while they are walked
 
 
@@ -32,7 +30,7 @@ def rollout(
     out: Path,
     steps: int = 800,
     resolution: float | None = None,
-    steering: Steering = "leas",
+    steering: str = "leas",
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     scale: float = 1.0,
@@ -50,8 +48,8 @@ def rollout(
         out: the guide paths, .npz.
         steps: most configurations after the first of a path.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, under
-            its conditions.
+        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
+            MODULE:CLASS of your own, under its conditions.
         picture: draw the paths from above (.png, .svg, .pdf).
         up: of a mesh, the axis that points up.
         scale: of a mesh, metres a unit.
@@ -101,18 +99,16 @@ def rollout(
 
 
 def steering_named(
-    steering: Steering, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
+    steering: str, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
 ) -> "SteeringMethod":
     """Return the steering method of that name, as fast as its task says; LEAS needs a policy."""
     from jaxleas.guide.leas import leas
-    from jaxleas.guide.rb_kino import rb_kino
-    from jaxleas.guide.rb_lin import rb_lin
+    from jaxleas.guide.registry import LEAS, baseline_named
 
-    if steering == "leas":
+    if steering == LEAS:
         assert policy is not None
         return leas(env, policy)
-    baseline = {"kino": rb_kino, "lin": rb_lin}[steering]
-    return baseline(env.config.limits, env.config.desired_speed)
+    return baseline_named(steering, env)
 
 
 def walk_queries(

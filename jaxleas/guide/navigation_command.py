@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.guide.commands import Steering, steering_named
+from jaxleas.guide.commands import steering_named
 from jaxleas.types import InputError, RootMotion
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def navigate(
     from_: str,
     to: str,
     terrain: Path,
-    steering: Steering = "leas",
+    steering: str = "leas",
     planner: Literal["rrt", "prm", "none"] = "rrt",
     policy: Path | None = None,
     limit: float = 20.0,
@@ -44,7 +44,8 @@ def navigate(
         from_: x,y or x,y,yaw of the start [m, rad]; without yaw the robot faces the goal if it can.
         to: x,y of the goal [m].
         terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain.
+        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
+            MODULE:CLASS of your own.
         planner: rrt or prm look for waypoints if the goal alone will not do; none = the goal alone.
         policy: a run folder, a policy.npz or an .onnx; needed for leas, whose task the others
             share if it is given.
@@ -111,7 +112,7 @@ def navigate(
 def make_navigator(
     places: "Places",
     method: "SteeringMethod",
-    steering: Steering,
+    steering: str,
     planner: str,
     scene: "Scene | None" = None,
     reach: float | None = None,
@@ -184,7 +185,7 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
     return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
 
 
-def _steering(steering: Steering, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
+def _steering(steering: str, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
     from jaxleas.envs.steering.config import SteeringConfig
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.loading import load_policy

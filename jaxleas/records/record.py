@@ -9,9 +9,9 @@ from typing import Any, Literal, get_args
 from jaxleas.configuration.former import with_present_names
 from jaxleas.configuration.yaml_text import read_mapping
 from jaxleas.envs.registry import DEFAULT_TASK, TASKS
-from jaxleas.evaluation.examination import BASELINES
 from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
 from jaxleas.files import is_held, read_json
+from jaxleas.guide.registry import BASELINES
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.config import RunConfig
 from jaxleas.training.run_config import run_config_of

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.evaluation.examination import BASELINES, POLICY, Candidate
+from jaxleas.evaluation.examination import POLICY, Candidate
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.files import read_json, write_bytes, write_text
+from jaxleas.guide.registry import BASELINES
 from jaxleas.reports.gallery import Picture, draw_gallery
 from jaxleas.reports.learning_curves import draw_learning_curves
 from jaxleas.reports.page import page_template

@@ -111,3 +111,33 @@ def test_queries_off_the_map_are_refused(files):
     files["queries"].write_text(json.dumps([{**QUERIES[0], "position": [99, 0, 1]}]))
     with pytest.raises(InputError, match="off the map"):
         rollout(**files)
+
+
+OWN_METHOD = '''
+from jaxleas.types import RootMotion
+
+
+class Slide:
+    """Moves roots sideways, whatever is there."""
+
+    def __init__(self, limits, desired_speed):
+        self.step = limits.time_step * desired_speed
+
+    def __call__(self, heights_in_root, motion, goal):
+        return RootMotion(motion.position.at[..., 1].add(self.step), motion.velocity, motion.yaw)
+'''
+
+
+def test_a_steering_method_of_ones_own_walks(files, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "slide.py").write_text(OWN_METHOD)
+    rollout(**files, steering="slide:Slide", steps=5)
+    path = read_guide_paths(files["out"]).paths[0]
+    np.testing.assert_allclose(np.diff(path.position[:, 1]), 0.02, atol=1e-5)
+    np.testing.assert_array_equal(np.diff(path.position[:, 0]), 0.0)
+
+
+def test_an_unknown_steering_method_gets_the_nearest_and_the_list(files):
+    with pytest.raises(InputError, match=r"'kimo'; perhaps you meant kino; there are leas, kino"):
+        rollout(**files, steering="kimo")
+    assert not files["out"].exists()
