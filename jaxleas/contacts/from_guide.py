@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
 from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Model, Phase
-from jaxleas.contacts.steps import rotation
+from jaxleas.contacts.programs.steps import rotation
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.boxes import Box

@@ -7,7 +7,7 @@ import numpy as np
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import rotation
+from jaxleas.contacts.programs.steps import rotation
 from jaxleas.files import atomic_path
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError

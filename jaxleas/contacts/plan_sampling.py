@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.planners import PlannerError, require_time_limit
+from jaxleas.contacts.planner import PlannerError, require_time_limit
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures

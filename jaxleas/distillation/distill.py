@@ -20,6 +20,7 @@ from jaxleas.distillation.rounds import (
     known_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
+from jaxleas.evaluation.table import refined_name
 from jaxleas.training.policy import read_policy
 
 _MODES = {"surrogate": AgainstSurrogate, "faithful": AgainstPlanner}
@@ -70,7 +71,7 @@ def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> Rou
     cells = judge_round(
         place.folder.round(number).judged,
         practised.policy,
-        f"leas_p2_{planner}" if number else "leas_p1",
+        refined_name(planner) if number else "leas_p1",
         planner,
         place.judge,
         place.config.judge,

@@ -83,6 +83,7 @@ def label_round(
             planner,
             settings,
             folder.labels / "verdicts",
+            robot=ground.env.config.robot,
         )
     ]
     total, done = sum(map(len, shards)), 0

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration.loading import load_config
+from jaxleas.contacts.registry import title_of
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, read_run_data
@@ -12,7 +13,6 @@ from jaxleas.evaluation.figure_pictures import draw_figures
 from jaxleas.evaluation.page import page_template
 from jaxleas.evaluation.published import thesis
 from jaxleas.evaluation.report import inline
-from jaxleas.evaluation.side_by_side import PLANNER_TITLES
 from jaxleas.evaluation.side_by_side import headings as side_headings
 from jaxleas.evaluation.side_by_side import rows as side_rows
 from jaxleas.evaluation.table import cell_title, percent
@@ -21,7 +21,6 @@ from jaxleas.files import write_text
 
 TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # of what a surrogate is worth
-LEARNING = {"sampling": "4.7", "mip": "5.5"}
 
 
 def write_distilled_report(run: Path, out: Path | None = None) -> Path:
@@ -47,7 +46,7 @@ def render(data: RunData, config: DistillationConfig) -> str:
     best = data.best
     return page_template("jaxleas.distillation", TEMPLATE).render(
         name=data.path.resolve().name,
-        planner=PLANNER_TITLES[config.planner],
+        planner=title_of(config.planner),
         mode=config.mode,
         headlines=headlines(data, config),
         starts=config.judge.starts,
@@ -60,7 +59,7 @@ def render(data: RunData, config: DistillationConfig) -> str:
         labels=data.labels,
         percent=percent,
         learning=inline(draw_learning(data.start, data.practice)) if data.practice else None,
-        learned=thesis().figures.get(LEARNING.get(config.planner, ""), ""),
+        learned=thesis().learning_of(config.planner),
         tables=[table for table in thesis_tables(data.evaluations) if not table.is_empty],
         sides=[
             (each, side_headings(each), side_rows(each))

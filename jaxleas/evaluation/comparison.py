@@ -54,7 +54,10 @@ def compare(
     with ExitStack() as stack:
         stack.callback(workers.close)
         chosen = {} if settings is None else settings
-        judges = {name: Judge(name, chosen.get(name), workers=workers) for name in planners}
+        robot = candidate.env.config.robot
+        judges = {
+            name: Judge(name, chosen.get(name), workers=workers, robot=robot) for name in planners
+        }
         head = _head(candidate, contenders, suite, judges)
         before = None if file is None else kept_evaluation(file, candidate)
         sheet = _Sheet(head, suite, file, before)

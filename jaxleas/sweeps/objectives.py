@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import judge_exact, walker
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide.leas import leas
 from jaxleas.labels import Judge
-from jaxleas.labels.settings import settings_from
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
 from jaxleas.training.policy import read_policy
@@ -80,7 +80,7 @@ def _exact_success(run: Path, objective: Exact) -> float:
     env = SteeringEnv(policy.config)
     settings: Any = settings_from(objective.planner, **objective.parameters)
     shares = []
-    with Judge(objective.planner, settings) as judge:
+    with Judge(objective.planner, settings, robot=env.config.robot) as judge:
         for name in objective.suites:
             cells = judge_exact(
                 env,

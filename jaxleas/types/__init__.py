@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from jaxleas.types.errors import InputError, JaxleasError
 from jaxleas.types.paths import GuidePath
 from jaxleas.types.queries import Query
+from jaxleas.types.verdict import Verdict
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
-__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion"]
+__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion", "Verdict"]
 
 
 def __getattr__(name: str) -> Any:

@@ -238,6 +238,6 @@ def test_check_asks_for_what_the_plan_needs(folder, climb) -> None:
     write_plan("plan.json", climb)
     with pytest.raises(InputError, match=r"--guide GUIDE\.npz --scene"):
         run("check plan.json scene.json --guide guide.npz")
-    write_plan("plan.json", climb.but(planner="mip"))
+    write_plan("plan.json", climb.but(planner="mip", postures=None))
     with pytest.raises(InputError, match="say which problem"):
         cli.run(["check", "plan.json"])

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from jaxleas.contacts.plan import ContactPlan, write_plan
-from jaxleas.contacts.planners import plan_mip
 from jaxleas.contacts.problem_file import write_problem
+from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.guide import write_guide_paths
 from jaxleas.types import GuidePath, InputError
 from jaxleas.viewer.clips import guide_clip, plan_clip, read_guide_clips, read_plan_clip

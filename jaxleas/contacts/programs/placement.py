@@ -8,12 +8,12 @@ import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 
-from jaxleas.contacts.com import foot_yaws
-from jaxleas.contacts.com_places import place_coms
-from jaxleas.contacts.least_distance import least_distance
-from jaxleas.contacts.linear_program import Outcome, Program, Rows, Solution, solve
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step, rotation
+from jaxleas.contacts.programs.com import foot_yaws
+from jaxleas.contacts.programs.com_places import place_coms
+from jaxleas.contacts.programs.least_distance import least_distance
+from jaxleas.contacts.programs.linear_program import Outcome, Program, Rows, Solution, solve
+from jaxleas.contacts.programs.steps import INITIAL, Step, rotation
 from jaxleas.types.errors import InputError
 
 MOST_MARGIN = 0.02

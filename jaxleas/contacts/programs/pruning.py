@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step
+from jaxleas.contacts.programs.steps import INITIAL, Step
 
 SAFETY = 1e-6
 """A surface goes only if a step to it would violate a half-space by more than this [m]."""

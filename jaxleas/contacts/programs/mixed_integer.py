@@ -5,10 +5,10 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.linear_program import Program, Rows
-from jaxleas.contacts.placement import Targets
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step
+from jaxleas.contacts.programs.linear_program import Program, Rows
+from jaxleas.contacts.programs.placement import Targets
+from jaxleas.contacts.programs.steps import INITIAL, Step
 
 Formulation = Literal["hull", "big_m"]
 LOOSER, SPARE = 1.5, 0.05

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import Step, rotation
+from jaxleas.contacts.programs.steps import Step, rotation
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.types.errors import InputError
 

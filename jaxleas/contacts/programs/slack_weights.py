@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.from_guide import BESIDE_ROOT, nearest_below
-from jaxleas.contacts.mixed_integer import Candidates
 from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.contacts.programs.mixed_integer import Candidates
 from jaxleas.types import InputError
 
 SlackWeights = Literal["uniform", "guide"]
