@@ -13,6 +13,7 @@ from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
+from jaxleas.robots import load_robot
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError, JaxleasError
@@ -58,7 +59,7 @@ def plan(
     settings = plan_settings_from(found, cost=_wanted(cost), max_combinations=max_combinations)
     asked = read_problem(problem)
     if found.needs == "guide":
-        followed = AskedGuide(asked.robot, guide_from_problem(asked), scene_of_problem(asked))
+        followed = _along_roots(asked)
         answer = found.plan(followed, settings, time_limit=time_limit)
         return _tell(answer, followed, out, picture)
     if without_guide:
@@ -74,6 +75,7 @@ def check(
     guide: Path | None = None,
     scene: Path | None = None,
     query: int = 0,
+    robot: str | None = None,
     picture: Path | None = None,
 ) -> None:
     """Recompute every constraint on a plan, in metres.
@@ -84,13 +86,15 @@ def check(
         guide: the guide path it follows, .npz (sampling).
         scene: the scene it crosses, .json or a mesh (sampling).
         query: which path of the guide's file.
+        robot: robot of a plan that follows a guide (sampling), talos by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     read = read_plan(plan)
     if picture is not None:
         _require_writable_names(Path("plan.json"), picture)
     if read.postures is not None:
-        _check_postures(plan, read, problem, guide, scene, query, picture)
+        asked = _followed(plan, problem, guide, scene, query, robot)
+        _check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
         return
     if problem is None:
         raise InputError(
@@ -107,39 +111,47 @@ def check(
     print(f"{plan} is certified: {len(asked)} phases, nothing violated (tightest: {verdict})")
 
 
-def _check_postures(
-    path: Path,
-    read: ContactPlan,
+def _followed(
+    plan: Path,
     problem: Path | None,
     guide: Path | None,
     scene: Path | None,
     query: int,
-    picture: Path | None,
-) -> None:
+    robot: str | None,
+) -> AskedGuide:
+    """Return the guide path that a plan follows, the scene and the robot."""
     from jaxleas.contacts.guide_file import read_guide_path
-    from jaxleas.contacts.plan_sampling import walked_problem
-    from jaxleas.contacts.posture_certificate import certify_postures
 
     if problem is not None and guide is None and scene is None:
-        asked = read_problem(problem)
-        followed, crossed = guide_from_problem(asked), scene_of_problem(asked)
-    elif problem is None and guide is not None and scene is not None:
-        followed, crossed = read_guide_path(guide, query), load_scene(scene)
-    else:
-        raise InputError(
-            f"{path} is of the {read.planner} planner: it is checked against its guide and scene,"
-            " with --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"
-        )
-    certificate = certify_postures(read, followed, crossed)
+        return _along_roots(read_problem(problem), robot)
+    if problem is None and guide is not None and scene is not None:
+        followed = read_guide_path(guide, query)
+        return AskedGuide(robot or DEFAULT_ROBOT, followed, load_scene(scene))
+    raise InputError(
+        f"{plan} holds postures along a guide path: it is checked against its guide and scene,"
+        " with --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"
+    )
+
+
+def _along_roots(problem: ContactProblem, robot: str | None = None) -> AskedGuide:
+    """Return the guide path through a problem's roots, over its surfaces."""
+    guide, scene = guide_from_problem(problem), scene_of_problem(problem)
+    return AskedGuide(robot or problem.robot, guide, scene)
+
+
+def _check_postures(
+    plan: Path, read: ContactPlan, asked: AskedGuide, what: str, picture: Path | None
+) -> None:
+    from jaxleas.contacts.posture_certificate import certify_postures
+
+    certificate = certify_postures(read, asked.guide, asked.scene, load_robot(asked.robot))
     if picture is not None:
-        _draw(picture, walked_problem(read, followed, crossed), read, followed)
+        _draw_walk(picture, read, asked)
     if not certificate.certified:
-        raise NotCertifiedError(
-            f"{path} is no plan for {problem or f'{guide} on {scene}'}: {certificate.complaint}"
-        )
+        raise NotCertifiedError(f"{plan} is no plan for {what}: {certificate.complaint}")
     worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"
     print(
-        f"{path} is certified: {len(read.postures or ())} postures, nothing violated (tightest:"
+        f"{plan} is certified: {len(read.postures or ())} postures, nothing violated (tightest:"
         f" {worst.constraint}, posture {worst.phase}: {worst.metres:.3g} m), least robustness"
         f" {certificate.least_robustness:.3g} N{end}"
     )
@@ -270,10 +282,7 @@ def _tell(
         words = describe(asked, answer)
     else:
         if picture is not None:
-            from jaxleas.contacts.plan_sampling import walked_problem
-
-            steps = walked_problem(answer, asked.guide, asked.scene)
-            _draw(picture, steps, answer, asked.guide)
+            _draw_walk(picture, answer, asked)
         words = describe_walk(asked.guide, answer)
     print(f"{words}\nwritten to {out}")
     return answer
@@ -299,6 +308,13 @@ def _draw(
     from jaxleas.contacts.pictures import draw_plan
 
     draw_plan(picture, problem, found, guide, _as_far_as_it_goes(problem, found))
+
+
+def _draw_walk(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
+    from jaxleas.contacts.plan_sampling import walked_problem
+
+    steps = walked_problem(found, asked.guide, asked.scene, load_robot(asked.robot))
+    _draw(picture, steps, found, asked.guide)
 
 
 def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:

@@ -14,9 +14,9 @@ from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
 from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.planner import _Walk
-from jaxleas.contacts.sampling.world import World, talos_world
+from jaxleas.contacts.sampling.world import World, make_world
 from jaxleas.contacts.surfaces import make_surface
-from jaxleas.robots import load_robot
+from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
@@ -31,8 +31,9 @@ def plan_sampling(
     settings: SamplingSettings | None = None,
     *,
     time_limit: float = math.inf,
+    robot: Robot | None = None,
 ) -> ContactPlan:
-    """Plan Talos's contacts along a guide path (T 4.1): acyclic, follows the guide exactly.
+    """Plan a robot's contacts along a guide path (T 4.1): acyclic, follows the guide exactly.
 
     A phase of the plan is a contact that was made; `postures` has both feet at every kept
     configuration. Without success the plan holds what was reached: "not_found" proves nothing.
@@ -42,14 +43,15 @@ def plan_sampling(
         scene: surfaces to stand on, obstacles to stay clear of.
         settings: of the planner.
         time_limit: [s], once the data base is made; after it the plan's status is "time_limit".
+        robot: robot with two legs; Talos by default.
 
     Raises:
         InputError: the guide or the scene cannot be used, or the guide leaves the scene.
         PlannerError: a bug of ours: the plan fails its certificate.
     """
     require_time_limit(time_limit)
-    settings = settings or SamplingSettings()
-    world = talos_world([scene], settings)
+    settings, robot = settings or SamplingSettings(), robot or load_robot("talos")
+    world = make_world(robot, [scene], settings)
     begin = time.perf_counter()
     walk = _TimedWalk(world, guide, begin + time_limit)
     _require_over(scene, guide)
@@ -63,7 +65,7 @@ def plan_sampling(
         plan = plan.but(status="time_limit", reason=f"{reason}: {plan.reason.partition(': ')[0]}")
     if not len(walked):
         return plan
-    certificate = certify_postures(plan, guide, scene)
+    certificate = certify_postures(plan, guide, scene, robot)
     if not certificate.certified:
         raise PlannerError(f"the sampling planner made a plan that {certificate.complaint}")
     return plan.but(max_violation=certificate.worst.metres)
@@ -94,7 +96,9 @@ def contact_plan(walked: SamplingPlan, gap: float) -> ContactPlan:
     )
 
 
-def walked_problem(plan: ContactPlan, guide: GuidePath, scene: Scene) -> ContactProblem:
+def walked_problem(
+    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
+) -> ContactProblem:
     """Return the steps of a sampling plan as a contact problem, each with the surface it took.
 
     For pictures, and to ask another planner for the same steps. Model "feet".
@@ -103,8 +107,9 @@ def walked_problem(plan: ContactPlan, guide: GuidePath, scene: Scene) -> Contact
         plan: of `plan_sampling`.
         guide: that it follows.
         scene: that it crosses.
+        robot: robot that the plan is for; Talos by default.
     """
-    robot, postures = load_robot("talos"), plan.postures or ()
+    robot, postures = robot or load_robot("talos"), plan.postures or ()
     return ContactProblem(
         robot=robot.name,
         model="feet",

@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib import resources
 
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.files import read_json, refuse_misspelt_keys
+from jaxleas.files import refuse_misspelt_keys
 from jaxleas.geometry.polytopes import Polytope
+from jaxleas.robots import load_robot
 from jaxleas.types.errors import InputError
 
 NAMES = ("RF_in_LF", "LF_in_RF", "COM_in_LF", "COM_in_RF")
@@ -86,15 +86,20 @@ def _polytope(where: str, content: object) -> Polytope:
 
 @cache
 def load_step_polytopes(robot: str) -> StepPolytopes:
-    """Return the package's own polytopes of a robot (scripts/make_talos_steps.py).
+    """Return the step polytopes of a robot, which its file holds.
 
     Raises:
         InputError: there are none for this robot.
     """
-    shipped = resources.files("jaxleas.contacts") / "data" / f"{robot}_steps.json"
-    if not shipped.is_file():
-        raise InputError(
-            f"there are no step polytopes for robot {robot!r}; give the problem its 'polytopes'"
-        )
-    with resources.as_file(shipped) as path:
-        return read_polytopes(str(path), read_json(path)["polytopes"], "two_com")
+    try:
+        steps = load_robot(robot).steps
+    except InputError as error:
+        raise InputError(_no_steps(robot)) from error
+    if not steps:
+        raise InputError(_no_steps(robot))
+    content = {name: {"A": each.normals, "b": each.offsets} for name, each in steps.items()}
+    return read_polytopes(f"robot {robot}: steps", content, "two_com")
+
+
+def _no_steps(robot: str) -> str:
+    return f"there are no step polytopes for robot {robot!r}; give the problem its 'polytopes'"

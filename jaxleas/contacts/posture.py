@@ -1,4 +1,4 @@
-"""Postures: where both feet stand at a configuration of the guide, and what came before."""
+"""Postures: where all feet stand at a configuration of the guide, and what came before."""
 
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -6,21 +6,26 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.problem import FEET, FootPose
+from jaxleas.contacts.problem import FootPose
 from jaxleas.types.errors import InputError
 
 How = Literal["start", "kept", "stepped", "repositioned"]
 """The first; contacts kept while the root moved on; one made anew as the root moved on, or not."""
 
 
+_OF_ALL = ("configuration", "how", "moved", "com")
+"""Keys of a posture in a file that are no foot's name."""
+
+
 @dataclass(frozen=True, eq=False)
 class Posture:
-    """Double support at one configuration of a guide path.
+    """All feet in contact at one configuration of a guide path.
 
     Attributes:
         configuration: of the guide, counted from 0.
         how: the posture came about.
-        moved: foot that was moved, "LF" or "RF"; None at the start and where contacts are kept.
+        moved: name of the foot that was moved, such as "LF"; None at the start and where contacts
+            are kept.
         feet: where each stands: a point on its surface [m], and the foot's yaw [rad].
         surfaces: name of each foot's surface.
         com: centre of mass in the world [m].
@@ -42,7 +47,7 @@ def posture_to_json(posture: Posture) -> dict[str, Any]:
             "yaw": posture.feet[foot].yaw,
             "surface": posture.surfaces[foot],
         }
-        for foot in FEET
+        for foot in posture.feet
     }
     return {
         "configuration": posture.configuration,
@@ -60,25 +65,29 @@ def posture_from_json(where: str, content: Any) -> Posture:
         InputError: it is none; `where` names it.
     """
     try:
+        feet = {str(foot): each for foot, each in content.items() if foot not in _OF_ALL}
         read = Posture(
             configuration=int(content["configuration"]),
             how=content["how"],
             moved=content["moved"],
             feet={
-                foot: FootPose(_vector(content[foot]["position"]), float(content[foot]["yaw"]))
-                for foot in FEET
+                foot: FootPose(_vector(each["position"]), float(each["yaw"]))
+                for foot, each in feet.items()
             },
-            surfaces={foot: str(content[foot]["surface"]) for foot in FEET},
+            surfaces={foot: str(each["surface"]) for foot, each in feet.items()},
             com=_vector(content["com"]),
         )
-    except (KeyError, TypeError, ValueError) as error:
+        if not feet:
+            raise ValueError("no foot stands")
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(
-            f"{where} is no posture: it needs configuration, how, moved, com, and for LF and RF"
-            " position, yaw and surface, all numbers finite"
+            f"{where} is no posture: it needs configuration, how, moved, com, and for each foot,"
+            " such as LF and RF, position, yaw and surface, all numbers finite"
         ) from error
-    if read.how not in get_args(How) or read.moved not in (None, *FEET):
+    if read.how not in get_args(How) or read.moved not in (None, *read.feet):
         raise InputError(
-            f"{where}: how must be one of {', '.join(get_args(How))}, and moved LF, RF or null"
+            f"{where}: how must be one of {', '.join(get_args(How))}, and moved one of"
+            f" {', '.join(read.feet)} or null"
         )
     return read
 

@@ -14,10 +14,8 @@ from scipy.optimize import linprog
 from jaxleas.contacts.certificate import TOLERANCE, Violation
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.posture import Posture
-from jaxleas.contacts.posture_model import Stood, stand, two_point_margin
-from jaxleas.contacts.problem import FEET
-from jaxleas.robots import load_robot
-from jaxleas.robots.legs import load_talos_legs
+from jaxleas.contacts.posture_model import Stood, limb_of, stand, two_point_margin
+from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
@@ -57,7 +55,9 @@ class PostureCertificate:
         return ""
 
 
-def certify_postures(plan: ContactPlan, guide: GuidePath, scene: Scene) -> PostureCertificate:
+def certify_postures(
+    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
+) -> PostureCertificate:
     """Recompute every constraint on the postures of a sampling plan.
 
     Each foot lies on its surface; one foot moves at a time; each leg reaches its foothold within
@@ -69,26 +69,27 @@ def certify_postures(plan: ContactPlan, guide: GuidePath, scene: Scene) -> Postu
         plan: with postures.
         guide: that it follows.
         scene: that it crosses.
+        robot: robot that the plan is for; Talos by default.
 
     Raises:
         InputError: the plan is none for this guide and scene.
     """
     postures = _require_fitting(plan, guide, scene)
-    robot, legs = load_robot("talos"), load_talos_legs()
+    robot = robot or load_robot("talos")
     worst, least, error = Violation(-math.inf, 0, ""), math.inf, 0.0
     before: tuple[Posture, Stood] | None = None
     assert plan.robustness is not None
     for number, (posture, said) in enumerate(zip(postures, plan.robustness, strict=True)):
         at = posture.configuration
         root = np.asarray(guide.position[at], np.float64)
-        stood = stand(posture, root, float(guide.yaw[at]), plan.gap, scene, legs, robot)
+        stood = stand(posture, root, float(guide.yaw[at]), plan.gap, scene, robot)
         found = [*stood.found, (np.linalg.norm(posture.com - stood.com), "centre of mass")]
         if before is not None:
-            found += _change(*before, posture, stood)
+            found += _change(robot, *before, posture, stood)
         metres, constraint = max(found)
         if metres > worst.metres:
             worst = Violation(float(metres), number, constraint)
-        robustness = _robustness(stood, legs.mass, robot.friction)
+        robustness = _robustness(stood, robot.friction)
         least = min(least, robustness)
         error = max(error, abs(robustness - said) / max(abs(robustness), 1.0))
         before = posture, stood
@@ -96,30 +97,30 @@ def certify_postures(plan: ContactPlan, guide: GuidePath, scene: Scene) -> Postu
 
 
 def _change(
-    before: Posture, stood_before: Stood, now: Posture, stood: Stood
+    robot: Robot, before: Posture, stood_before: Stood, now: Posture, stood: Stood
 ) -> list[tuple[float, str]]:
     """Feet that did not move are where they were; one that did had somewhere to shift weight."""
     found = []
-    for foot in FEET:
+    for foot in now.feet:
         if foot != now.moved:
             one, two = before.feet[foot], now.feet[foot]
             moved = max(float(np.abs(one.position - two.position).max()), abs(one.yaw - two.yaw))
             found.append((moved, f"{foot} standing still"))
     if now.moved is not None:
-        legs = load_talos_legs()
+        reaches = {foot: limb_of(robot, foot).com_reach for foot in now.feet}
         for which, text in ((stood_before, "leaves"), (stood, "lands")):
-            margin = two_point_margin(which, now.moved, legs.com_in_foot)
+            margin = two_point_margin(which, now.moved, reaches)
             found.append((-margin, f"room for the centre of mass as {now.moved} {text}"))
     return found
 
 
-def _robustness(stood: Stood, mass: float, friction: float) -> float:
+def _robustness(stood: Stood, friction: float) -> float:
     """max b0 with G b = m [-g; c x -g], b_i >= b0, times |(sum_j g_j) x g_1| of one point.
 
     Torques about the world's origin; generators and points of their own.
     """
     columns, scale = [], 0.0
-    for foot in FEET:
+    for foot in stood.rotations:
         normal = stood.rotations[foot][:, 2]
         first = np.array([-normal[2], 0.0, normal[0]])  # n x e_y
         first = first / np.linalg.norm(first)
@@ -134,7 +135,7 @@ def _robustness(stood: Stood, mass: float, friction: float) -> float:
             columns += [np.concatenate([g, np.cross(point, g)]) for g in cone]
     G = np.column_stack(columns)
     # In units of the weight: the solver's tolerances are absolute, and ours is a millionth.
-    newtons = mass * 9.81
+    newtons = stood.mass * 9.81
     weight = np.array([0.0, 0.0, 1.0])
     wrench = np.concatenate([weight, np.cross(stood.com, weight)])
     count = G.shape[1]

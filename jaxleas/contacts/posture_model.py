@@ -6,16 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 from scipy.optimize import linprog
+from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.posture import Posture
-from jaxleas.contacts.problem import FEET
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.robots import Robot
-from jaxleas.robots.leg_kinematics import leg_angles
-from jaxleas.robots.legs import LegModel
+from jaxleas.robots.limb_model import Body, LimbModel
 from jaxleas.terrain.scene import Scene
-
-SIDES = {"LF": 1.0, "RF": -1.0}
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +26,7 @@ class Stood:
         soles: middle of each sole in the world [m].
         corners: of the part of each sole that is over its surface [m].
         com: of the whole robot in the world [m].
+        mass: of the whole robot [kg].
     """
 
     found: list[tuple[float, str]]
@@ -35,6 +34,7 @@ class Stood:
     soles: dict[str, Float[np.ndarray, " 3"]]
     corners: dict[str, Float[np.ndarray, "4 3"]]
     com: Float[np.ndarray, " 3"]
+    mass: float
 
 
 def stand(
@@ -43,7 +43,6 @@ def stand(
     yaw: float,
     gap: float,
     scene: Scene,
-    legs: LegModel,
     robot: Robot,
 ) -> Stood:
     """Work out a posture.
@@ -54,13 +53,16 @@ def stand(
         yaw: likewise [rad].
         gap: between sole and surface [m].
         scene: that it stands on.
-        legs: their lengths, limits and masses.
-        robot: size of its soles.
+        robot: robot with a model of each limb.
+
+    Raises:
+        InputError: the robot's file does not describe its body or a limb's joints.
     """
-    turn = about("z", yaw)
-    moment = legs.body_mass * (root + turn @ legs.body_com)
+    turn, body = about("z", yaw), body_of(robot)
+    moment, mass = body.mass * (root + turn @ body.com), body.mass
     found, rotations, soles, corners = [], {}, {}, {}
-    for foot in FEET:
+    for foot in posture.feet:
+        model, square = limb_of(robot, foot), robot.effector(foot).half_size
         pose, polygon = posture.feet[foot], np.asarray(scene.surfaces[posture.surfaces[foot]])
         normal = normal_of(polygon)
         rotation = foot_rotation(normal, pose.yaw)
@@ -74,39 +76,65 @@ def stand(
         found.append(
             (beyond_edges(polygon, normal, pose.position), f"{foot} within the surface's edges")
         )
-        angles = _witness(legs, turn.T @ (sole - root), turn.T @ rotation, SIDES[foot])
-        frames, origins, reached, reached_turn = chain(legs, angles, SIDES[foot])
-        square = robot.foot_half_size
+        angles = _witness(model, turn.T @ (sole - root), turn.T @ rotation)
+        frames, origins, reached, reached_turn = chain(model, angles)
         apart = [
             root + turn @ (reached + reached_turn @ arm) - (sole + rotation @ arm)
             for arm in _arms(square)
         ]
         found.append((float(np.linalg.norm(apart, axis=1).max()), f"reach of {foot}"))
-        side = np.diag([1.0, SIDES[foot], 1.0])
-        for link in range(6):
-            centre = origins[link] + frames[link] @ side @ legs.link_com[link]
-            moment = moment + legs.link_mass[link] * (root + turn @ centre)
+        for frame, origin, weight, com in zip(
+            frames, origins, model.link_mass, model.link_com, strict=True
+        ):
+            moment = moment + weight * (root + turn @ (origin + frame @ com))
+            mass += float(weight)
         rotations[foot], soles[foot] = rotation, sole
         corners[foot] = _over_surface(polygon, normal, sole, rotation, square)
-    return Stood(found, rotations, soles, corners, moment / legs.mass)
+    return Stood(found, rotations, soles, corners, moment / mass, mass)
 
 
-def two_point_margin(stood: Stood, moving: str, com_in_foot: Polytope) -> float:
+def limb_of(robot: Robot, effector: str) -> LimbModel:
+    """Return the joints, masses and shapes of the limb that carries an effector.
+
+    Raises:
+        InputError: the robot has no such effector, or its file no 'model' of the limb.
+    """
+    limb = robot.limbs[robot.effector_index(effector)]
+    if limb.model is None:
+        raise InputError(
+            f"the file of robot '{robot.name}' has no 'model' of its limb '{limb.name}', which"
+            " postures need"
+        )
+    return limb.model
+
+
+def body_of(robot: Robot) -> Body:
+    """Return the mass of all that is no limb.
+
+    Raises:
+        InputError: the robot's file does not state it.
+    """
+    if robot.body is None:
+        raise InputError(f"the file of robot '{robot.name}' has no 'body', which postures need")
+    return robot.body
+
+
+def two_point_margin(stood: Stood, moving: str, reaches: dict[str, Polytope]) -> float:
     """Return how much room the centre of mass has over the standing foot, in reach of both [m].
 
     Args:
         stood: the posture before the foot leaves, or after it has landed.
         moving: the other foot.
-        com_in_foot: reach of the centre of mass from the left foot, turned by its yaw alone.
+        reaches: reach of the centre of mass from each foot, in its frame turned by its yaw alone.
     """
-    standing = "RF" if moving == "LF" else "LF"
+    (standing,) = (foot for foot in reaches if foot != moving)
     rows, bounds = [], []
-    for foot in FEET:
-        rotation, side = stood.rotations[foot], np.array([1.0, SIDES[foot], 1.0])
+    for foot, reach in reaches.items():
+        rotation = stood.rotations[foot]
         turn = about("z", math.atan2(rotation[1, 0], rotation[0, 0]))
-        normals = (com_in_foot.normals * side) @ turn.T
+        normals = reach.normals @ turn.T
         rows.append(normals)
-        bounds.append(com_in_foot.offsets + normals @ stood.soles[foot])
+        bounds.append(reach.offsets + normals @ stood.soles[foot])
     corners = stood.corners[standing]
     for here, there in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         outward = np.array([there[1] - here[1], here[0] - there[0], 0.0])
@@ -125,28 +153,26 @@ def two_point_margin(stood: Stood, moving: str, com_in_foot: Polytope) -> float:
 
 
 def chain(
-    legs: LegModel, angles: Float[np.ndarray, " 6"], side: float
+    model: LimbModel, angles: Float[np.ndarray, " J"]
 ) -> tuple[list[np.ndarray], list[np.ndarray], np.ndarray, np.ndarray]:
-    """Place a leg's links in the root frame, one joint after the other.
+    """Place a limb's links in the root frame, one joint after the other.
 
     Args:
-        legs: the left leg's model.
-        angles: as this leg's own joints count them [rad].
-        side: +1 left, -1 right.
+        model: limb.
+        angles: joint angles [rad].
 
     Returns:
-        Frames of the six links, origins of their joints [m], the sole's position and rotation.
+        Frames of the links, origins of their joints [m], the effector's position and rotation.
     """
-    down = np.array([0.0, 0.0, -1.0])
-    lengths = (0.0, 0.0, legs.thigh, legs.shank, 0.0, legs.sole)
-    place, turn = legs.hip * np.array([1.0, side, 1.0]), np.eye(3)
-    frames, origins = [], []
-    for axis, angle, length in zip("zxyyyx", angles, lengths, strict=True):
+    place, turn = np.zeros(3), np.eye(3)
+    joints, frames, origins = model.chain, [], []
+    for index, angle in enumerate(angles):
+        place = place + turn @ joints.positions[index]
         origins.append(place)
-        turn = turn @ about(axis, float(angle))
+        spin = Rotation.from_rotvec(float(angle) * joints.axes[index]).as_matrix()
+        turn = turn @ joints.rotations[index] @ spin
         frames.append(turn)
-        place = place + turn @ (length * down)
-    return frames, origins, place, turn
+    return frames, origins, place + turn @ joints.tip.position, turn @ joints.tip.rotation
 
 
 def about(axis: str, angle: float) -> Float[np.ndarray, "3 3"]:
@@ -181,12 +207,10 @@ def beyond_edges(polygon: np.ndarray, normal: np.ndarray, point: np.ndarray) -> 
     return float(((point - polygon) * outward).sum(axis=1).max())
 
 
-def _witness(legs: LegModel, sole: np.ndarray, rotation: np.ndarray, side: float) -> np.ndarray:
-    """Return angles within the joint limits, as this leg's own joints count them."""
-    mirror = np.diag([1.0, side, 1.0])
-    angles, _ = leg_angles(legs, mirror @ sole, mirror @ rotation @ mirror)
-    held = np.clip(angles, legs.lower, legs.upper)
-    return held * np.array([side, side, 1.0, 1.0, 1.0, side])
+def _witness(model: LimbModel, position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    """Return angles within the joint limits that bring the effector as near as is known."""
+    angles, _ = model.inverse(position, rotation)
+    return np.clip(angles, model.chain.lower, model.chain.upper)
 
 
 def _arms(half_size: tuple[float, float]) -> list[np.ndarray]:

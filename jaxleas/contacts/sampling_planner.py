@@ -6,7 +6,8 @@ from jaxleas.contacts.plan_sampling import plan_sampling
 from jaxleas.contacts.planner import AskedGuide, AskedGuides, Grain, Planner, mean_step
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
-from jaxleas.types import GuidePath, InputError, Verdict
+from jaxleas.robots import load_robot
+from jaxleas.types import GuidePath, Verdict
 
 
 class Sampling(Planner):
@@ -30,22 +31,17 @@ class Sampling(Planner):
         """Plan contacts along one guide path, or along a problem's roots."""
         if isinstance(asked, ContactProblem):
             asked = AskedGuide(asked.robot, guide_from_problem(asked), scene_of_problem(asked))
-        _require_legs(asked.robot)
-        return plan_sampling(asked.guide, asked.scene, settings, time_limit=time_limit)
+        robot = load_robot(asked.robot)
+        return plan_sampling(asked.guide, asked.scene, settings, time_limit=time_limit, robot=robot)
 
     def judge(self, asked: AskedGuides, settings: SamplingSettings) -> list[Verdict]:
         """Judge guide paths, walked abreast."""
-        _require_legs(asked.robot)
-        plans = plan_over(asked.scenes, asked.paths, asked.scene_index, settings)
+        robot = load_robot(asked.robot)
+        plans = plan_over(asked.scenes, asked.paths, asked.scene_index, settings, robot)
         return [
             _verdict(number, path, plan)
             for (number, _, path), plan in zip(asked, plans, strict=True)
         ]
-
-
-def _require_legs(robot: str) -> None:
-    if robot != "talos":
-        raise InputError(f"the sampling planner knows the legs of talos only, not of {robot!r}")
 
 
 def _verdict(number: int, path: GuidePath, plan: SamplingPlan) -> Verdict:

@@ -1,37 +1,62 @@
-"""Robots by name: those that come with the package, and files in the working folder's `robots/`."""
+"""Robots by name: those that come with the package, and files of one's own."""
 
 import difflib
 import re
-from collections.abc import Callable
+from functools import cache
+from importlib import resources
 from pathlib import Path
 
 from jaxleas.robots.files import read_robot
 from jaxleas.robots.robot import Robot
-from jaxleas.robots.talos import load_talos
 from jaxleas.types.errors import InputError
 
 FOLDER = Path("robots")
-ROBOTS: dict[str, Callable[[], Robot]] = {"talos": load_talos}
+"""Files of one's own are looked for here, in the working folder."""
+
+
+@cache
+def robot_names() -> tuple[str, ...]:
+    """Return the names of the robots that come with the package."""
+    shipped = resources.files("jaxleas.robots") / "data"
+    return tuple(
+        sorted(file.name.removesuffix(".json") for file in shipped.iterdir() if _is_json(file.name))
+    )
 
 
 def load_robot(name: str) -> Robot:
-    """Return the robot called `name`: of the package, or of the file `robots/<name>.json`.
+    """Return a robot: of the package, of the file `robots/<name>.json`, or of a path.
+
+    Args:
+        name: name of a robot, or path of its file, which ends with .json.
 
     Raises:
-        InputError: there is none of that name, or its file does not describe it.
+        InputError: there is no such robot, or its file does not describe it.
     """
-    if name not in ROBOTS:
-        file = FOLDER / f"{name}.json"
-        # A name, never a way out of the folder.
-        if re.fullmatch(r"[\w-]+", str(name)) and file.is_file():
-            return _require_name(read_robot(file), name, file)
-        near = difflib.get_close_matches(str(name).lower(), ROBOTS, n=1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        raise InputError(
-            f"there is no robot {name!r}, only {', '.join(sorted(ROBOTS))} and those in {FOLDER}/"
-            f" of the working folder{hint}"
-        )
-    return ROBOTS[name]()
+    if name in robot_names():
+        return _shipped(name)
+    if _is_json(str(name)):
+        return read_robot(name)
+    file = FOLDER / f"{name}.json"
+    # A name, never a way out of the folder.
+    if re.fullmatch(r"[\w-]+", str(name)) and file.is_file():
+        return _require_name(read_robot(file), name, file)
+    known = sorted({*robot_names(), *(path.stem for path in FOLDER.glob("*.json"))})
+    near = difflib.get_close_matches(str(name).lower(), known, n=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    raise InputError(
+        f"there is no robot {name!r}, only {', '.join(known)} and those that you describe in"
+        f" {FOLDER}/ of the working folder or give as the path of a .json file{hint}"
+    )
+
+
+@cache
+def _shipped(name: str) -> Robot:
+    with resources.as_file(resources.files("jaxleas.robots") / "data" / f"{name}.json") as path:
+        return read_robot(path)
+
+
+def _is_json(name: str) -> bool:
+    return name.endswith(".json")
 
 
 def _require_name(robot: Robot, name: str, file: Path) -> Robot:

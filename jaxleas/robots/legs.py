@@ -1,121 +1,141 @@
-"""What a humanoid's legs look like to a planner that moves their joints."""
+"""Two legs that are mirror images, as a planner that moves their joints sees them."""
 
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
-from jaxleas.files import read_json
-from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.polytopes import Polytope
+from jaxleas.robots.chain import ChainPosture
+from jaxleas.robots.limb_model import Body, LimbModel
+from jaxleas.robots.robot import Robot
+from jaxleas.robots.talos import load_talos
 from jaxleas.types.errors import InputError
 
-JOINTS = 6
-"""Hip yaw, hip roll, hip pitch, knee, ankle pitch, ankle roll."""
-MIRRORED_JOINTS = np.array([-1.0, -1.0, 1.0, 1.0, 1.0, -1.0])
-"""The left leg's angles times this are the right leg's in the mirrored pose."""
+_ALIKE = 1e-6
+"""Geometry of two legs that are mirror images agrees within this [m and rad]."""
 
 
 @dataclass(frozen=True, eq=False)
 class LegModel:
-    """The left leg; the right one is its mirror image in the root's plane y = 0.
+    """The left leg, and the body between the legs; the right leg is the left one's mirror image.
 
-    Three hip axes meet in one point, two ankle axes in another, so the inverse has a closed form.
+    For the right leg mirror what goes in and what comes out in the root's plane y = 0: positions
+    by (1, -1, 1), rotations by that on both sides, angles by `mirror_signs`.
 
     Attributes:
-        hip: where the hip's axes meet, in the root frame [m].
-        thigh: from hip to knee [m].
-        shank: from knee to ankle [m].
-        sole: from ankle to the sole below it [m].
-        lower: joint limits [rad].
-        upper: joint limits [rad].
-        reference: the joint angles one stands with [rad].
-        link_mass: of the six links [kg].
-        link_com: centre of mass of each link in its joint's frame [m].
-        body_mass: of all that is not leg [kg].
-        body_com: its centre of mass in the root frame, arms in the reference posture [m].
-        thigh_box: around the thigh, in the frame of the hip pitch joint [m].
-        shank_box: around the shank, in the frame of the knee [m].
-        foot_box: around the foot, in the frame of the ankle roll joint [m].
-        com_in_foot: where the whole robot's centre of mass can be while the left foot stands:
-            in the frame of the sole turned by the foot's yaw alone [m].
+        left: left leg.
+        body: all of the robot but its legs.
     """
 
-    hip: Float[np.ndarray, " 3"]
-    thigh: float
-    shank: float
-    sole: float
-    lower: Float[np.ndarray, " 6"]
-    upper: Float[np.ndarray, " 6"]
-    reference: Float[np.ndarray, " 6"]
-    link_mass: Float[np.ndarray, " 6"]
-    link_com: Float[np.ndarray, "6 3"]
-    body_mass: float
-    body_com: Float[np.ndarray, " 3"]
-    thigh_box: Box
-    shank_box: Box
-    foot_box: Box
-    com_in_foot: Polytope
+    left: LimbModel
+    body: Body
+
+    @property
+    def joints(self) -> int:
+        """Number of joints of one leg."""
+        return len(self.left.chain)
+
+    @property
+    def lower(self) -> Float[np.ndarray, " J"]:
+        """Lower joint limits of the left leg [rad]."""
+        return self.left.chain.lower
+
+    @property
+    def upper(self) -> Float[np.ndarray, " J"]:
+        """Upper joint limits of the left leg [rad]."""
+        return self.left.chain.upper
+
+    @property
+    def reference(self) -> Float[np.ndarray, " J"]:
+        """Joint angles that the left leg stands with [rad]."""
+        return self.left.reference
+
+    @property
+    def mirror_signs(self) -> Float[np.ndarray, " J"]:
+        """The left leg's angles times these are the right leg's in the mirrored posture."""
+        return self.left.chain.mirror_signs
+
+    @property
+    def com_in_foot(self) -> Polytope:
+        """Reach of the centre of mass from the left foot, in its frame turned by its yaw alone."""
+        return self.left.com_reach
 
     @property
     def mass(self) -> float:
-        """Of the whole robot [kg]."""
-        return self.body_mass + 2.0 * float(self.link_mass.sum())
+        """Mass of the whole robot [kg]."""
+        return self.body.mass + 2.0 * float(self.left.link_mass.sum())
 
 
 @cache
-def load_talos_legs() -> LegModel:
-    """Return Talos's legs from the file that scripts/make_talos_legs.py made from the URDF."""
-    shipped = resources.files("jaxleas.robots") / "data" / "talos_legs.json"
-    with resources.as_file(shipped) as path:
-        return read_legs(path)
-
-
-def read_legs(path: str | Path) -> LegModel:
-    """Return the legs described by a JSON file.
+def legs_of(robot: Robot) -> LegModel:
+    """Return the two legs of a robot.
 
     Raises:
-        InputError: the file is missing, is not JSON, or a key is missing or malformed.
+        InputError: the robot's file describes no legs, or they are not two mirror images.
     """
-    described = read_json(path)
-    try:
-        return LegModel(
-            hip=_array(described["hip"], (3,)),
-            thigh=float(described["thigh"]),
-            shank=float(described["shank"]),
-            sole=float(described["sole"]),
-            lower=_array(described["lower"], (JOINTS,)),
-            upper=_array(described["upper"], (JOINTS,)),
-            reference=_array(described["reference"], (JOINTS,)),
-            link_mass=_array(described["link_mass"], (JOINTS,)),
-            link_com=_array(described["link_com"], (JOINTS, 3)),
-            body_mass=float(described["body_mass"]),
-            body_com=_array(described["body_com"], (3,)),
-            thigh_box=_box(described["thigh_box"]),
-            shank_box=_box(described["shank_box"]),
-            foot_box=_box(described["foot_box"]),
-            com_in_foot=Polytope(
-                np.asarray(described["com_in_foot"]["normals"], dtype=np.float64),
-                np.asarray(described["com_in_foot"]["offsets"], dtype=np.float64),
-            ),
+    models = [robot.limbs[index].model for index in robot.feet]
+    if robot.body is None or any(model is None for model in models):
+        raise InputError(
+            f"the file of robot '{robot.name}' has no 'body', or a leg of it no 'model': a planner"
+            " that moves joints needs both; scripts/make_robot.py makes them from a URDF"
         )
-    except KeyError as error:
-        raise InputError(f"{path} lacks the key {error}, which a leg model needs") from error
-    except (TypeError, ValueError, IndexError) as error:
-        raise InputError(f"{path} does not describe legs: {error}") from error
+    left, right = (models[0], models[1]) if len(models) == 2 else (None, None)
+    if left is None or right is None or not _mirror_images(left, right):
+        raise InputError(
+            f"robot '{robot.name}' has {len(models)} legs that are not two mirror images in the"
+            " root's plane y = 0, left before right, as this planner needs them"
+        )
+    return LegModel(left, robot.body)
 
 
-def _array(value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    array = np.asarray(value, dtype=np.float64)
-    if array.shape != shape or not np.isfinite(array).all():
-        raise ValueError(f"expected finite numbers of shape {shape}, got shape {array.shape}")
-    return array
+def load_talos_legs() -> LegModel:
+    """Return the legs of Talos."""
+    return legs_of(load_talos())
 
 
-def _box(value: Any) -> Box:
-    low, high = _array(value["low"], (3,)), _array(value["high"], (3,))
-    return Box(tuple(low.tolist()), tuple(high.tolist()))
+def leg_posture(legs: LegModel, angles: Float[np.ndarray, "*batch J"]) -> ChainPosture:
+    """Place the left leg's links in the root frame.
+
+    Args:
+        legs: pair of legs.
+        angles: joint angles [rad].
+    """
+    return legs.left.posture(angles)
+
+
+def leg_angles(
+    legs: LegModel,
+    sole: Float[np.ndarray, "*batch 3"],
+    rotation: Float[np.ndarray, "*batch 3 3"],
+) -> tuple[Float[np.ndarray, "*batch J"], Bool[np.ndarray, "*batch"]]:
+    """Return the angles that bring the left sole to a pose, and whether it is in reach.
+
+    Args:
+        legs: pair of legs.
+        sole: position of the sole in the root frame [m].
+        rotation: orientation of the sole in the root frame.
+    """
+    return legs.left.inverse(sole, rotation)
+
+
+def mass_moment(
+    legs: LegModel,
+    frames: Float[np.ndarray, "*batch J 3 3"],
+    origins: Float[np.ndarray, "*batch J 3"],
+) -> Float[np.ndarray, "*batch 3"]:
+    """Return the sum of mass times centre over a leg's links, in the frame of both [kg m]."""
+    return legs.left.mass_moment(frames, origins)
+
+
+def _mirror_images(left: LimbModel, right: LimbModel) -> bool:
+    one, other = left.chain.mirrored(), right.chain
+    if len(one) != len(other):
+        return False
+    pairs = [
+        (getattr(one, key), getattr(other, key))
+        for key in ("positions", "rotations", "axes", "lower", "upper")
+    ]
+    pairs += [(one.tip.position, other.tip.position), (one.tip.rotation, other.tip.rotation)]
+    return all(np.abs(a - b).max() <= _ALIKE for a, b in pairs)

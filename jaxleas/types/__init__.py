@@ -8,13 +8,27 @@ from typing import TYPE_CHECKING, Any
 
 from jaxleas.types.errors import InputError, JaxleasError
 from jaxleas.types.paths import GuidePath
+from jaxleas.types.poses import Pose, RootPose
 from jaxleas.types.queries import Query
+from jaxleas.types.stances import Contact, Stance, SupportPhase
 from jaxleas.types.verdict import Verdict
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
-__all__ = ["GuidePath", "InputError", "JaxleasError", "Query", "RootMotion", "Verdict"]
+__all__ = [
+    "Contact",
+    "GuidePath",
+    "InputError",
+    "JaxleasError",
+    "Pose",
+    "Query",
+    "RootMotion",
+    "RootPose",
+    "Stance",
+    "SupportPhase",
+    "Verdict",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -16,8 +16,8 @@ from jaxleas.contacts.plan_sampling import walked_problem
 from jaxleas.contacts.posture_model import about, chain
 from jaxleas.contacts.problem import FootPose
 from jaxleas.files import write_json, write_npz
-from jaxleas.robots.leg_kinematics import leg_posture
-from jaxleas.robots.legs import MIRRORED_JOINTS, load_talos_legs
+from jaxleas.robots import load_talos
+from jaxleas.robots.legs import leg_posture, load_talos_legs
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
@@ -139,11 +139,12 @@ def test_the_joint_by_joint_chain_is_the_legs_kinematics(side: float) -> None:
     legs = load_talos_legs()
     mirror = np.diag([1.0, side, 1.0])
     for angles in np.random.default_rng(0).uniform(legs.lower, legs.upper, (20, 6)):
-        own = angles if side > 0 else angles * MIRRORED_JOINTS
-        frames, origins, sole, turn = chain(legs, own, side)
+        own = angles if side > 0 else angles * legs.mirror_signs
+        model = load_talos().limbs[0 if side > 0 else 1].model
+        frames, origins, sole, turn = chain(model, own)
         posture = leg_posture(legs, angles)
-        np.testing.assert_allclose(sole, mirror @ posture.sole, atol=1e-12)
-        np.testing.assert_allclose(turn, mirror @ posture.foot @ mirror, atol=1e-12)
+        np.testing.assert_allclose(sole, mirror @ posture.tip, atol=1e-12)
+        np.testing.assert_allclose(turn, mirror @ posture.tip_rotation @ mirror, atol=1e-12)
         np.testing.assert_allclose(origins, posture.origins @ mirror, atol=1e-12)
         np.testing.assert_allclose(np.linalg.det(frames), 1.0, atol=1e-12)
     np.testing.assert_allclose(about("z", math.pi / 2) @ [1, 0, 0], [0, 1, 0], atol=1e-12)
@@ -220,7 +221,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
         ("plan missing.json --planner sampling --out p.json", "missing.json does not exist"),
         ("contacts guide.npz --scene scene.json --cost linear", "--cost is for mip and sl1m"),
         ("contacts guide.npz --scene scene.json --problem a.json", "--problem is for mip"),
-        ("contacts guide.npz --scene scene.json --robot spot", "knows the legs of talos only"),
+        ("contacts guide.npz --scene scene.json --robot spot", "there is no robot .spot."),
         ("contacts guide.npz --scene scene.json --every 0", "every 0 must be at least 1"),
         ("contacts guide.npz --scene scene.json --time-limit -1", "positive number of seconds"),
         ("contacts guide.npz --scene scene.json --query 2", "no path 2"),

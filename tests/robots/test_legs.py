@@ -1,16 +1,15 @@
 import json
-import site
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from urdfs import TALOS, published
 
-from jaxleas.robots import load_talos
-from jaxleas.robots.leg_kinematics import leg_angles, leg_posture, mass_moment
-from jaxleas.robots.legs import MIRRORED_JOINTS, load_talos_legs, read_legs
+from jaxleas.geometry import Polytope
+from jaxleas.robots import load_talos, read_robot, write_robot
+from jaxleas.robots.legs import leg_angles, leg_posture, legs_of, load_talos_legs, mass_moment
+from jaxleas.robots.spherical_leg import SphericalLeg
 from jaxleas.types import InputError
-
-SOLE = np.array([0.0, 0.0, -0.107])
 
 
 @pytest.fixture
@@ -24,30 +23,28 @@ def draw(legs, count: int, seed: int) -> np.ndarray:
 
 def test_the_reference_stands_where_the_robot_facts_say(legs):
     posture = leg_posture(legs, legs.reference)
-    np.testing.assert_allclose(posture.sole, [0.0, 0.0848, -1.0193], atol=1e-2)
-    np.testing.assert_allclose(posture.foot[:, 2], [0.0, 0.0, 1.0], atol=5e-3)
+    np.testing.assert_allclose(posture.tip, [0.0, 0.0848, -1.0193], atol=1e-2)
+    np.testing.assert_allclose(posture.tip_rotation[:, 2], [0.0, 0.0, 1.0], atol=5e-3)
     assert abs(legs.mass - load_talos().mass) < 0.01
 
 
 def test_both_legs_agree_with_the_published_model(legs):
     pin = pytest.importorskip("pinocchio")
-    inside = "cmeel.prefix/share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf"
-    found = [Path(folder) / inside for folder in site.getsitepackages()]
-    urdf = next((path for path in found if path.is_file()), None)
-    if urdf is None:
-        pytest.skip("example-robot-data is not installed")
-    model = pin.buildModelFromUrdf(str(urdf))
+    model = pin.buildModelFromUrdf(str(published(TALOS)))
     data = model.createData()
-    for side, sign in (("left", 1.0), ("right", -1.0)):
+    for limb, side, sign in zip(load_talos().limbs, ("left", "right"), (1.0, -1.0), strict=True):
         ids = [model.getJointId(f"leg_{side}_{number}_joint") for number in range(1, 7)]
         mirror = np.array([1.0, sign, 1.0])
         for angles in draw(legs, 30, seed=1):
+            own = angles if sign > 0 else angles * legs.mirror_signs
             whole = pin.neutral(model)
-            for joint, angle, flip in zip(ids, angles, MIRRORED_JOINTS, strict=True):
-                whole[model.joints[joint].idx_q] = angle * (1.0 if sign > 0 else flip)
+            for joint, angle in zip(ids, own, strict=True):
+                whole[model.joints[joint].idx_q] = angle
             pin.forwardKinematics(model, data, whole)
+            sole = data.oMi[ids[-1]] * limb.effector.frame.position
+            np.testing.assert_allclose(limb.model.posture(own).tip, sole, atol=1e-12)
             posture = leg_posture(legs, angles)
-            np.testing.assert_allclose(mirror * posture.sole, data.oMi[ids[-1]] * SOLE, atol=1e-6)
+            np.testing.assert_allclose(mirror * posture.tip, sole, atol=1e-12)
             moment = sum(
                 model.inertias[joint].mass * (data.oMi[joint] * model.inertias[joint].lever)
                 for joint in ids
@@ -61,9 +58,10 @@ def test_both_legs_agree_with_the_published_model(legs):
 def test_inverse_undoes_forward_wherever_the_hip_is_above_the_foot(legs):
     angles = draw(legs, 5000, seed=2)
     posture = leg_posture(legs, angles)
-    seen = np.einsum("nkj,nk->nj", posture.foot, legs.hip - posture.origins[:, 5])
+    hip = legs.left.chain.positions[0]
+    seen = np.einsum("nkj,nk->nj", posture.tip_rotation, hip - posture.origins[:, 5])
     above = seen[:, 2] > 0.0  # of two solutions the closed form takes this one
-    found, reachable = leg_angles(legs, posture.sole, posture.foot)
+    found, reachable = leg_angles(legs, posture.tip, posture.tip_rotation)
     assert above.mean() > 0.9
     assert reachable[above].mean() > 0.99
     good = above & reachable
@@ -77,13 +75,14 @@ def test_what_is_called_reachable_is_reached_within_the_limits(legs):
     angles, reachable = leg_angles(legs, soles, level)
     assert 0.05 < reachable.mean() < 0.95
     posture = leg_posture(legs, angles[reachable])
-    np.testing.assert_allclose(posture.sole, soles[reachable], atol=1e-9)
-    np.testing.assert_allclose(posture.foot, level[reachable], atol=1e-9)
+    np.testing.assert_allclose(posture.tip, soles[reachable], atol=1e-9)
+    np.testing.assert_allclose(posture.tip_rotation, level[reachable], atol=1e-9)
     assert (angles[reachable] >= legs.lower).all()
     assert (angles[reachable] <= legs.upper).all()
+    shape = SphericalLeg.of(legs.left.chain)
     far = (
-        np.linalg.norm(soles + np.array([0.0, 0.0, legs.sole]) - legs.hip, axis=1)
-        > legs.thigh + legs.shank
+        np.linalg.norm(soles + np.array([0.0, 0.0, shape.sole]) - shape.hip, axis=1)
+        > shape.thigh + shape.shank
     )
     assert not reachable[far].any()
 
@@ -92,16 +91,72 @@ def test_one_posture_or_any_batch(legs):
     angles = draw(legs, 6, seed=4)
     one = leg_posture(legs, angles[2])
     many = leg_posture(legs, angles.reshape(2, 3, 6))
-    np.testing.assert_allclose(many.sole[0, 2], one.sole)
-    found, _ = leg_angles(legs, many.sole, many.foot)
-    np.testing.assert_allclose(found[0, 2], leg_angles(legs, one.sole, one.foot)[0])
+    np.testing.assert_allclose(many.tip[0, 2], one.tip)
+    found, _ = leg_angles(legs, many.tip, many.tip_rotation)
+    np.testing.assert_allclose(found[0, 2], leg_angles(legs, one.tip, one.tip_rotation)[0])
 
 
-def test_a_file_that_is_no_leg_model_is_named(tmp_path):
-    path = tmp_path / "legs.json"
-    path.write_text(json.dumps({"hip": [0, 0, 0]}))
-    with pytest.raises(InputError, match=r"legs\.json lacks the key 'thigh'"):
-        read_legs(path)
-    path.write_text(json.dumps({"hip": [0, 0]}))
-    with pytest.raises(InputError, match="does not describe legs"):
-        read_legs(path)
+def test_legs_survive_their_file(legs, tmp_path):
+    write_robot(tmp_path / "robot.json", load_talos())
+    described = json.loads((tmp_path / "robot.json").read_text())
+    assert described["limbs"][1]["mirror_of"] == "left"
+    again = legs_of(read_robot(tmp_path / "robot.json"))
+    assert again.mass == legs.mass
+    assert again.left.boxes == legs.left.boxes
+    assert again.left.capsules == legs.left.capsules
+    angles = draw(legs, 10, seed=5)
+    np.testing.assert_array_equal(leg_posture(again, angles).tip, leg_posture(legs, angles).tip)
+
+
+def test_legs_that_are_no_mirror_images_are_refused(legs):
+    talos = load_talos()
+    left, right = talos.limbs
+    crossed = replace(talos, limbs=(left, replace(right, model=left.model)))
+    with pytest.raises(InputError, match="2 legs that are not two mirror images"):
+        legs_of(crossed)
+    with pytest.raises(InputError, match=r"no 'body', or a leg of it no 'model'"):
+        legs_of(replace(talos, body=None))
+    with pytest.raises(InputError, match="1 legs that are not"):
+        legs_of(replace(talos, limbs=(left,)))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda model: model.pop("joints"), "'joints'"),
+        (lambda model: model["joints"][2].update(axis=[0, 0, 2]), "length 1"),
+        (lambda model: model["joints"][2].update(lower=9.0), "its lower limit 9.0 is above"),
+        (lambda model: model["joints"][2].update(mass=-1.0), "must not be negative"),
+        (lambda model: model["joints"][2].pop("reference"), "'reference'"),
+        (lambda model: model["boxes"][0].update(link=6), "no link 6"),
+        (lambda model: model["tip"].update(quaternion=[1, 1, 0, 0]), "length 1"),
+        (lambda model: model["com_reach"].update(offsets=[1.0]), "polytope"),
+    ],
+)
+def test_a_damaged_model_is_refused_with_what_is_wrong(tmp_path, change, said):
+    path = tmp_path / "robot.json"
+    write_robot(path, load_talos())
+    described = json.loads(path.read_text())
+    change(described["limbs"][0]["model"])
+    path.write_text(json.dumps(described))
+    with pytest.raises(InputError, match=said):
+        read_robot(path)
+
+
+def test_a_mirror_image_of_nothing_is_refused(tmp_path):
+    path = tmp_path / "robot.json"
+    write_robot(path, load_talos())
+    described = json.loads(path.read_text())
+    described["limbs"][1]["mirror_of"] = "middle"
+    path.write_text(json.dumps(described))
+    with pytest.raises(InputError, match="no limb 'middle' with a 'model' comes before"):
+        read_robot(path)
+
+
+def test_a_box_and_a_polytope_are_mirrored_with_their_limb(legs):
+    image = legs.left.mirrored()
+    box, mirrored = legs.left.boxes[0].box, image.boxes[0].box
+    assert (mirrored.low[1], mirrored.high[1]) == (-box.high[1], -box.low[1])
+    point = np.array([0.2, 0.1, 0.7])
+    assert isinstance(image.com_reach, Polytope)
+    assert image.com_reach.contains(point * [1, -1, 1]) == legs.com_in_foot.contains(point)

@@ -1,12 +1,13 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from jaxleas.robots import load_robot, load_talos, read_robot, write_robot
+from jaxleas.robots import Effector, Limb, load_robot, load_talos, read_robot, write_robot
 from jaxleas.types import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -20,8 +21,24 @@ def talos():
 
 def test_talos_is_found_by_name_and_others_are_not(talos):
     assert load_robot("talos") is talos
-    with pytest.raises(InputError, match="did you mean talos"):
+    with pytest.raises(InputError, match=r"no robot 'Talo', only .*talos.*did you mean talos\?"):
         load_robot("Talo")
+
+
+def test_robots_of_ones_own_are_found_by_name_and_by_path(talos, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    own = replace(talos, name="walker")
+    Path("robots").mkdir()
+    write_robot("robots/walker.json", own)
+    write_robot("elsewhere.json", own)
+    assert load_robot("walker").name == load_robot("elsewhere.json").name == "walker"
+    with pytest.raises(InputError, match=r"only .*walker.*did you mean walker\?"):
+        load_robot("walter")
+    Path("robots/runner.json").write_bytes(Path("elsewhere.json").read_bytes())
+    with pytest.raises(InputError, match=r"describes the robot 'walker'; name the file after it"):
+        load_robot("runner")
+    with pytest.raises(InputError, match=r"missing\.json"):
+        load_robot("missing.json")
 
 
 def test_legs_are_mirror_images(talos):
@@ -73,6 +90,77 @@ def test_a_robot_survives_its_file(talos, tmp_path):
     assert (again.mass, again.friction, again.root_height) == (90.272, 0.5, 1.0198)
     for one, other in zip(again.limbs, talos.limbs, strict=True):
         np.testing.assert_array_equal(one.range_of_motion.offsets, other.range_of_motion.offsets)
+    for one, other in zip(again.effectors, talos.effectors, strict=True):
+        assert (one.name, one.kind, one.half_size) == (other.name, other.kind, other.half_size)
+        assert (one.friction, one.force_limit, one.link) == (0.5, None, other.link)
+        np.testing.assert_array_equal(one.frame.position, [0.0, 0.0, -0.107])
+    assert again.start_heights == talos.start_heights
+    np.testing.assert_array_equal(again.references, talos.references)
+    assert again.steps.keys() == {"RF_in_LF", "LF_in_RF", "COM_in_LF", "COM_in_RF"}
+    for name, polytope in talos.steps.items():
+        np.testing.assert_array_equal(again.steps[name].normals, polytope.normals)
+
+
+def test_a_file_from_before_effectors_opens_with_feet_of_the_robots_size(talos, tmp_path):
+    path = tmp_path / "robot.json"
+    write_robot(path, talos)
+    described = json.loads(path.read_text())
+    for key in ("start_heights", "steps"):
+        described.pop(key)
+    for limb in described["limbs"]:
+        limb.pop("effector")
+        limb.pop("reference")
+    described.update(foot_half_size=[0.11, 0.05], friction=0.7)
+    path.write_text(json.dumps(described))
+    read = read_robot(path)
+    assert [effector.name for effector in read.effectors] == ["LF", "RF"]
+    assert {each.kind for each in read.effectors} == {"foot"}
+    assert {each.half_size for each in read.effectors} == {(0.11, 0.05)}
+    assert {each.friction for each in read.effectors} == {0.7}
+    assert read.start_heights == (-0.20, 0.07)
+    assert not read.steps
+    for place, limb in zip(read.references, read.limbs, strict=True):
+        assert place[2] == -read.root_height
+        assert limb.range_of_motion.contains([place[0], place[1], -read.walking_height])
+
+
+def test_effectors_are_found_by_name(talos):
+    assert talos.feet == (0, 1)
+    assert talos.effector_index("RF") == 1
+    assert talos.effector("LF").corners.shape == (4, 3)
+    with pytest.raises(InputError, match=r"no effector 'LP'; perhaps you meant LF; it has LF, RF"):
+        talos.effector("LP")
+
+
+def test_palms_carry_no_walking_robot(talos):
+    palm = Effector("LP", "palm", (0.05, 0.05), 0.5)
+    arm = Limb("left_arm", talos.limbs[0].range_of_motion, palm)
+    armed = replace(talos, limbs=(*talos.limbs, arm))
+    assert armed.feet == (0, 1)
+    assert armed.effector_index("LP") == 2
+    middle = armed.references[2]
+    assert arm.range_of_motion.contains(middle)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"kind": "hoof"}, "no known kind: 'hoof'; there are foot, palm, point_foot"),
+        ({"half_size": (0.1, -0.1)}, "half length and half width"),
+        ({"half_size": (0.0, 0.0)}, "point foot are 0"),
+        ({"friction": 0.0}, "friction must be a positive number"),
+        ({"force_limit": -1.0}, "force_limit must be a positive number"),
+        ({"name": ""}, "needs a name"),
+    ],
+)
+def test_what_is_no_effector_is_refused(talos, change, said):
+    with pytest.raises(InputError, match=said):
+        replace(talos.effectors[0], **change)
+
+
+def test_two_effectors_of_one_name_are_refused(talos):
+    with pytest.raises(InputError, match="two effectors called 'LF'"):
+        replace(talos, limbs=(talos.limbs[0], replace(talos.limbs[0], name="other")))
 
 
 @pytest.mark.parametrize(
@@ -84,6 +172,12 @@ def test_a_robot_survives_its_file(talos, tmp_path):
         (lambda robot: robot.update(foot_half_size=[1.0]), "robot"),
         (lambda robot: robot["limbs"][0].update(offsets=[1.0]), "polytope"),
         (lambda robot: robot["trunk"][0].update(low=[0, 0, 9]), "box"),
+        (lambda robot: robot["limbs"][0]["effector"].update(kind="hoof"), "hoof"),
+        (lambda robot: robot["limbs"][0]["effector"].pop("kind"), "'kind'"),
+        (lambda robot: robot["limbs"][0]["effector"]["frame"].update(position=[1]), "pose"),
+        (lambda robot: robot["limbs"][0].update(reference=[1, 2]), "robot"),
+        (lambda robot: robot.update(steps=[1]), "robot"),
+        (lambda robot: robot.update(start_heights=[0.1, -0.1]), "start_heights"),
     ],
 )
 def test_a_damaged_file_is_refused_with_what_is_wrong(talos, tmp_path, change, said):

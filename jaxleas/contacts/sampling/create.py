@@ -20,7 +20,7 @@ from jaxleas.contacts.sampling.limbs import (
 from jaxleas.contacts.sampling.stance import Stances, support_corners
 from jaxleas.contacts.sampling.two_point import com_exists
 from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.leg_kinematics import mass_moment
+from jaxleas.robots.legs import mass_moment
 
 _ROBUSTNESS_AT_FIRST = 3  # of the candidates that pass all else
 
@@ -234,4 +234,4 @@ def _clear_of_other_leg(
 ) -> np.ndarray:
     moving = leg_segments(world.legs, placed[chosen])
     standing = leg_segments(world.legs, kept)[row[chosen]]
-    return chosen[~legs_touch(moving, standing)]
+    return chosen[~legs_touch(world.legs, moving, standing)]

@@ -7,8 +7,9 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.dynamics.vectors import cross
-from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
-from jaxleas.robots.legs import LegModel, load_talos_legs
+from jaxleas.robots import Robot
+from jaxleas.robots.chain import chain_jacobian
+from jaxleas.robots.legs import LegModel, leg_angles, leg_posture, legs_of
 
 _TILTS = np.deg2rad([[0.0, 0.0], [12.0, 0.0], [-12.0, 0.0], [0.0, 12.0], [0.0, -12.0]])
 
@@ -32,7 +33,7 @@ class LegDatabase:
 
     legs: LegModel
     drawn: int
-    angles: Float[np.ndarray, "N 6"]
+    angles: Float[np.ndarray, "N J"]
     soles: Float[np.ndarray, "N 3"]
     rotations: Float[np.ndarray, "N 3 3"]
     manipulability: Float[np.ndarray, " N"]
@@ -47,9 +48,15 @@ class LegDatabase:
 
 
 @lru_cache(maxsize=4)
-def talos_database(samples: int, seed: int) -> LegDatabase:
-    """Return Talos's data base of `samples` configurations, made once for each process."""
-    return make_database(load_talos_legs(), samples, seed)
+def leg_database(robot: Robot, samples: int, seed: int) -> LegDatabase:
+    """Return the data base of a robot's legs, made once for each process.
+
+    Args:
+        robot: robot whose file describes its legs.
+        samples: number of configurations to draw.
+        seed: seed of the draw.
+    """
+    return make_database(legs_of(robot), samples, seed)
 
 
 def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
@@ -63,27 +70,27 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
         samples: to draw.
         seed: of the draw.
     """
-    angles = np.random.default_rng(seed).uniform(legs.lower, legs.upper, (samples, 6))
+    angles = np.random.default_rng(seed).uniform(legs.lower, legs.upper, (samples, legs.joints))
     angles[0] = legs.reference
     posture = leg_posture(legs, angles)
     usable = np.zeros(samples, dtype=bool)
     for x, y in _TILTS:
         normal = np.array([np.sin(x), np.sin(y), 0.0])
         normal[2] = np.sqrt(1.0 - normal @ normal)
-        aligned = align(posture.foot, np.broadcast_to(normal, (samples, 3)))
-        usable |= leg_angles(legs, posture.sole, aligned)[1]
+        aligned = align(posture.tip_rotation, np.broadcast_to(normal, (samples, 3)))
+        usable |= leg_angles(legs, posture.tip, aligned)[1]
     kept = np.flatnonzero(usable)
-    kept = kept[np.argsort(posture.sole[kept, 2], kind="stable")]
-    jacobian = sole_jacobian(legs, angles[kept])
-    manipulability = np.abs(np.linalg.det(jacobian))
+    kept = kept[np.argsort(posture.tip[kept, 2], kind="stable")]
+    jacobian = chain_jacobian(legs.left.chain, leg_posture(legs, angles[kept]))
+    manipulability = _manipulability(jacobian)
     linear = jacobian[:, :3]
-    soles = posture.sole[kept]
+    soles = posture.tip[kept]
     return LegDatabase(
         legs=legs,
         drawn=samples,
         angles=angles[kept],
         soles=soles,
-        rotations=posture.foot[kept],
+        rotations=posture.tip_rotation[kept],
         manipulability=manipulability / max(float(manipulability.max(initial=0.0)), 1e-12),
         translation=linear @ linear.transpose(0, 2, 1),
         reach=float(np.linalg.norm(soles[:, :2], axis=1).max(initial=0.0)),
@@ -92,17 +99,12 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
     )
 
 
-def sole_jacobian(legs: LegModel, angles: Float[np.ndarray, "N 6"]) -> Float[np.ndarray, "N 6 6"]:
-    """Return velocity over turn rate of the sole for each joint's speed [m/s and rad/s].
-
-    Column j is (a_j x (sole - o_j); a_j) for the joint's axis a_j through o_j.
-    """
-    posture = leg_posture(legs, angles)
-    about = np.array([2, 0, 1, 1, 1, 0])  # each joint's own axis, a column of its frame
-    axes = posture.frames[:, np.arange(6), :, about].transpose(1, 0, 2)
-    arms = posture.sole[:, None] - posture.origins
-    linear = cross(axes, arms)
-    return np.concatenate([linear, axes], axis=2).transpose(0, 2, 1)
+def _manipulability(jacobian: Float[np.ndarray, "N 6 J"]) -> Float[np.ndarray, " N"]:
+    """Return |det J|, or sqrt(det(J^T J)) of legs with fewer than six joints."""
+    if jacobian.shape[2] == 6:
+        return np.abs(np.linalg.det(jacobian))
+    gram = jacobian.transpose(0, 2, 1) @ jacobian
+    return np.sqrt(np.maximum(np.linalg.det(gram), 0.0))
 
 
 def align(

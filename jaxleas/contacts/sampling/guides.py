@@ -10,7 +10,7 @@ from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
 from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
 from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.leg_kinematics import leg_posture
+from jaxleas.robots.legs import leg_posture
 from jaxleas.types import GuidePath, InputError
 
 MOST_COORDINATE = 1e4  # a guide path further out [m] is given in other units
@@ -96,7 +96,7 @@ def keep_configurations(
         ahead=Roots(np.concatenate(later), np.concatenate(later_yaw), scene),
         direction=np.concatenate(direction),
         trunk_free=trunk_is_free(world, roots).reshape(index.shape),
-        reference_sole=leg_posture(world.legs, world.legs.reference).sole,
+        reference_sole=leg_posture(world.legs, world.legs.reference).tip,
     )
 
 

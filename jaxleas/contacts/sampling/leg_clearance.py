@@ -1,4 +1,4 @@
-"""Do the two legs bump into each other? Feet and shanks as capsules."""
+"""Do the two legs bump into each other? Their capsules, such as foot and shank, tell."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -6,34 +6,39 @@ from jaxtyping import Bool, Float
 from jaxleas.contacts.sampling.limbs import PlacedLegs
 from jaxleas.robots.legs import LegModel
 
-FOOT_RADIUS = 0.065
-"""Of a foot's capsule: half its width [m]."""
-SHANK_RADIUS = 0.065
-"""Of a shank's capsule [m]."""
-_PAIRS = ((0, 0), (1, 1), (0, 1), (1, 0))  # foot and foot, shank and shank, foot and shank twice
 
-
-def leg_segments(legs: LegModel, placed: PlacedLegs) -> Float[np.ndarray, "N 2 2 3"]:
-    """Return the middle lines of foot and shank in the world, as two end points each [m]."""
-    forward, up = placed.frames[:, 5, :, 0], placed.frames[:, 5, :, 2]
-    middle = placed.sole + FOOT_RADIUS * up
-    segments = np.empty((len(middle), 2, 2, 3))
-    segments[:, 0, 0] = middle + (legs.foot_box.low[0] + FOOT_RADIUS) * forward
-    segments[:, 0, 1] = middle + (legs.foot_box.high[0] - FOOT_RADIUS) * forward
-    segments[:, 1] = placed.origins[:, 3:5]
-    return segments
+def leg_segments(legs: LegModel, placed: PlacedLegs) -> Float[np.ndarray, "N C 2 3"]:
+    """Return the middle lines of the capsules in the world, as two end points each [m]."""
+    capsules = legs.left.capsules
+    links = [each.link for each in capsules]
+    ends = np.array([(each.start, each.end) for each in capsules]).reshape(-1, 2, 3)
+    frames = placed.frames[:, links]
+    return ends @ frames.transpose(0, 1, 3, 2) + placed.origins[:, links, None]
 
 
 def legs_touch(
-    one: Float[np.ndarray, "N 2 2 3"], other: Float[np.ndarray, "N 2 2 3"]
+    legs: LegModel,
+    one: Float[np.ndarray, "N C 2 3"],
+    other: Float[np.ndarray, "N C 2 3"],
 ) -> Bool[np.ndarray, " N"]:
-    """Tell whether two legs, given by their segments, are nearer than their radii allow."""
-    radii = (FOOT_RADIUS, SHANK_RADIUS)
-    first = np.concatenate([one[:, a] for a, _ in _PAIRS])
-    second = np.concatenate([other[:, b] for _, b in _PAIRS])
-    least = np.repeat([radii[a] + radii[b] for a, b in _PAIRS], len(one))
-    near = segment_distance(first, second) < least
-    return np.any(near.reshape(len(_PAIRS), -1), axis=0)
+    """Tell whether two legs, given by their segments, are nearer than their radii allow.
+
+    Args:
+        legs: pair of legs.
+        one: segments of one leg.
+        other: segments of the other leg.
+    """
+    radii = np.array([each.radius for each in legs.left.capsules])
+    first, second = np.indices((len(radii), len(radii))).reshape(2, -1)
+    if not len(first):
+        return np.zeros(len(one), dtype=bool)
+    least = np.repeat(radii[first] + radii[second], len(one))
+    pairs = [
+        np.moveaxis(segments[:, which], 1, 0).reshape(-1, 2, 3)
+        for segments, which in ((one, first), (other, second))
+    ]
+    near = segment_distance(*pairs) < least
+    return np.any(near.reshape(len(first), -1), axis=0)
 
 
 def segment_distance(

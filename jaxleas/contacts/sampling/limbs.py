@@ -7,12 +7,10 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.ground import Ground
-from jaxleas.robots.leg_kinematics import leg_angles, leg_posture
-from jaxleas.robots.legs import MIRRORED_JOINTS, LegModel
+from jaxleas.robots.legs import LegModel, leg_angles, leg_posture
 
 SIDES = np.array([1.0, -1.0])
 """Sign of y: left, right."""
-_BOX_LINKS = np.array([2, 3, 5])  # thigh, shank, foot
 
 
 @dataclass(frozen=True)
@@ -47,17 +45,17 @@ class PlacedLegs:
         side: +1 left, -1 right.
         angles: of the joints, in the left leg's convention [rad].
         reachable: whether the foothold is in reach within the joint limits.
-        frames: of the six links; of a right leg mirror images, whose second axis is reversed.
+        frames: of the links; of a right leg mirror images, whose second axis is reversed.
         origins: of the joints [m].
         sole: position of the sole's origin [m].
     """
 
     roots: Roots
     side: Float[np.ndarray, " N"]
-    angles: Float[np.ndarray, "N 6"]
+    angles: Float[np.ndarray, "N J"]
     reachable: Bool[np.ndarray, " N"]
-    frames: Float[np.ndarray, "N 6 3 3"]
-    origins: Float[np.ndarray, "N 6 3"]
+    frames: Float[np.ndarray, "N J 3 3"]
+    origins: Float[np.ndarray, "N J 3"]
     sole: Float[np.ndarray, "N 3"]
 
     def __getitem__(self, rows) -> "PlacedLegs":
@@ -141,9 +139,9 @@ def place_legs(
     )
 
 
-def joint_angles(placed: PlacedLegs) -> Float[np.ndarray, "N 6"]:
+def joint_angles(placed: PlacedLegs, legs: LegModel) -> Float[np.ndarray, "N J"]:
     """Return the angles as the robot's own joints count them [rad]."""
-    return np.where(placed.side[:, None] > 0.0, placed.angles, placed.angles * MIRRORED_JOINTS)
+    return np.where(placed.side[:, None] > 0.0, placed.angles, placed.angles * legs.mirror_signs)
 
 
 def legs_collide(
@@ -163,11 +161,14 @@ def legs_collide(
         ground: the scene.
         feet: whether feet count; one that keeps its contact has been judged before.
     """
-    count = len(_BOX_LINKS) if feet else len(_BOX_LINKS) - 1
-    boxes = (legs.thigh_box, legs.shank_box, legs.foot_box)[:count]
+    last = legs.joints - 1
+    shapes = [each for each in legs.left.boxes if feet or each.link != last]
+    count = len(shapes)
+    if not count:
+        return np.zeros(len(rows), dtype=bool)
+    boxes, links = [each.box for each in shapes], np.array([each.link for each in shapes])
     middle = np.array([0.5 * (np.add(box.low, box.high)) for box in boxes])
     half = np.array([0.5 * (np.subtract(box.high, box.low)) for box in boxes])
-    links = _BOX_LINKS[:count]
     # A box looks the same in a mirrored frame: its axes need not be right-handed.
     frames = placed.frames[rows[:, None], links]
     centres = (frames @ middle[:, :, None])[..., 0] + placed.origins[rows[:, None], links]
@@ -183,9 +184,9 @@ def legs_collide(
 
 def body_moments(legs: LegModel, roots: Roots) -> Float[np.ndarray, "N 3"]:
     """Return mass times position of all that is not leg, in the world [kg m]."""
-    com = np.broadcast_to(legs.body_com, roots.position.shape)
+    com = np.broadcast_to(legs.body.com, roots.position.shape)
     ones = np.ones(len(roots))
-    return legs.body_mass * (to_world(com, roots.yaw, ones) + roots.position)
+    return legs.body.mass * (to_world(com, roots.yaw, ones) + roots.position)
 
 
 def _left_root_frames(yaw: np.ndarray, side: np.ndarray) -> Float[np.ndarray, "N 3 3"]:

@@ -14,7 +14,7 @@ from jaxleas.contacts.sampling.limbs import (
 )
 from jaxleas.contacts.sampling.stance import LIMBS, Stances
 from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.leg_kinematics import mass_moment
+from jaxleas.robots.legs import mass_moment
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,9 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     if len(rows):
         kept[rows] = ~legs_collide(world.legs, placed, rows, world.ground, feet=False)
     kept = kept.reshape(count, LIMBS)
-    segments = leg_segments(world.legs, placed).reshape(count, LIMBS, 2, 2, 3)
-    both = kept.all(axis=1) & ~legs_touch(segments[:, 0], segments[:, 1])
+    segments = leg_segments(world.legs, placed)
+    segments = segments.reshape(count, LIMBS, *segments.shape[1:])
+    both = kept.all(axis=1) & ~legs_touch(world.legs, segments[:, 0], segments[:, 1])
     moments = (
         mass_moment(world.legs, placed.frames, placed.origins).reshape(count, LIMBS, 3).sum(axis=1)
     )

@@ -17,7 +17,8 @@ from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations, re
 from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.plan import SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
-from jaxleas.contacts.sampling.world import World, talos_world
+from jaxleas.contacts.sampling.world import World, make_world
+from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
@@ -26,29 +27,36 @@ _ABREAST = 64  # guide paths walked together: more does not fit the cache
 
 
 def plan_contacts(
-    scene: Scene, guide_path: GuidePath, settings: SamplingSettings | None = None
+    scene: Scene,
+    guide_path: GuidePath,
+    settings: SamplingSettings | None = None,
+    robot: Robot | None = None,
 ) -> SamplingPlan:
-    """Plan Talos's contacts along one guide path.
+    """Plan a robot's contacts along one guide path.
 
     Args:
         scene: surfaces to stand on, obstacles to stay clear of.
         guide_path: to be followed exactly.
         settings: of the planner; the published ones by default.
+        robot: robot with two legs; Talos by default.
 
     Raises:
         InputError: the guide path or the scene cannot be used.
     """
-    return plan_many(scene, [guide_path], settings)[0]
+    return plan_many(scene, [guide_path], settings, robot)[0]
 
 
 def plan_many(
-    scene: Scene, guide_paths: Sequence[GuidePath], settings: SamplingSettings | None = None
+    scene: Scene,
+    guide_paths: Sequence[GuidePath],
+    settings: SamplingSettings | None = None,
+    robot: Robot | None = None,
 ) -> list[SamplingPlan]:
-    """Plan Talos's contacts along several guide paths over one scene, in one process.
+    """Plan a robot's contacts along several guide paths over one scene, in one process.
 
     Every plan is the one that `plan_contacts` makes.
     """
-    return plan_over([scene], guide_paths, [0] * len(guide_paths), settings)
+    return plan_over([scene], guide_paths, [0] * len(guide_paths), settings, robot)
 
 
 def plan_over(
@@ -56,8 +64,9 @@ def plan_over(
     guide_paths: Sequence[GuidePath],
     scene_index: Sequence[int],
     settings: SamplingSettings | None = None,
+    robot: Robot | None = None,
 ) -> list[SamplingPlan]:
-    """Plan Talos's contacts along guide paths, each over one of several scenes, in one process.
+    """Plan a robot's contacts along guide paths, each over one of several scenes, in one process.
 
     Every plan is the one that `plan_contacts` makes; paths over different scenes, too, are walked
     abreast.
@@ -67,6 +76,7 @@ def plan_over(
         guide_paths: to be followed exactly.
         scene_index: of each guide path's scene.
         settings: of the planner; the published ones by default.
+        robot: robot with two legs; Talos by default.
 
     Returns:
         Plans in the order of the guide paths.
@@ -74,7 +84,7 @@ def plan_over(
     Raises:
         InputError: a guide path or a scene cannot be used.
     """
-    chosen = settings or SamplingSettings()
+    chosen, robot = settings or SamplingSettings(), robot or load_robot("talos")
     for number, path in enumerate(guide_paths):
         require_usable(path, number)
     index = np.asarray(scene_index, dtype=np.int64)
@@ -83,7 +93,7 @@ def plan_over(
     for first in range(0, len(order), _ABREAST):
         some = order[first : first + _ABREAST]
         used, local = np.unique(index[some], return_inverse=True)
-        world = talos_world([scenes[each] for each in used.tolist()], chosen)
+        world = make_world(robot, [scenes[each] for each in used.tolist()], chosen)
         walk = _Walk(world, [guide_paths[each] for each in some.tolist()], local.tolist())
         plans.update(zip(some.tolist(), walk.plans(), strict=True))
     return [plans[number] for number in range(len(guide_paths))]

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.sampling.database import LegDatabase, talos_database
+from jaxleas.contacts.sampling.database import LegDatabase, leg_database
 from jaxleas.contacts.sampling.ground import Ground, ground_of
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.stance import Stances
 from jaxleas.dynamics.equilibrium import equilibrium_robustness
 from jaxleas.dynamics.equilibrium_bound import decide_robustness
-from jaxleas.robots import Robot, load_talos
-from jaxleas.robots.legs import LegModel, load_talos_legs
+from jaxleas.robots import Robot
+from jaxleas.robots.legs import LegModel, legs_of
 from jaxleas.terrain.scene import Scene
 
 
@@ -64,12 +64,21 @@ def _contact_points(stances: Stances) -> tuple[np.ndarray, np.ndarray]:
     return stances.corners.reshape(count, -1, 3), normals
 
 
-def talos_world(scenes: Sequence[Scene], settings: SamplingSettings) -> World:
-    """Return Talos in scenes."""
+def make_world(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> World:
+    """Return a robot in scenes.
+
+    Args:
+        robot: robot with two legs, whose file describes them.
+        scenes: terrains.
+        settings: settings of the planner.
+
+    Raises:
+        InputError: the robot's file does not describe two legs that are mirror images.
+    """
     return World(
-        load_talos(),
-        load_talos_legs(),
-        talos_database(settings.samples, settings.seed),
+        robot,
+        legs_of(robot),
+        leg_database(robot, settings.samples, settings.seed),
         ground_of(scenes),
         settings,
     )

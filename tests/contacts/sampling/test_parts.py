@@ -5,14 +5,14 @@ from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import near_candidates
-from jaxleas.contacts.sampling.database import align, make_database, sole_jacobian, talos_database
+from jaxleas.contacts.sampling.database import align, leg_database, make_database
 from jaxleas.contacts.sampling.ground import ground_from
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import segment_distance
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.two_point import com_exists
-from jaxleas.contacts.sampling.world import talos_world
-from jaxleas.robots.leg_kinematics import leg_posture
+from jaxleas.contacts.sampling.world import make_world
+from jaxleas.robots import load_talos
 from jaxleas.robots.legs import load_talos_legs
 from tests.contacts.sampling.worlds import stairs, straight
 
@@ -87,7 +87,7 @@ def random_polygons() -> list[np.ndarray]:
 
 def test_the_database_begins_with_the_reference_and_grows_with_its_size():
     legs = load_talos_legs()
-    database = talos_database(25_000, 0)
+    database = leg_database(load_talos(), 25_000, 0)
     assert database.drawn == 25_000
     assert 5_000 < len(database) < 25_000
     assert (np.linalg.norm(database.angles - legs.reference, axis=1) < 1e-9).sum() == 1
@@ -96,21 +96,6 @@ def test_the_database_begins_with_the_reference_and_grows_with_its_size():
     assert (database.angles <= legs.upper).all()
     assert len(make_database(legs, 1000, 0)) < len(database)
     assert database.manipulability.max() == 1.0
-
-
-def test_the_jacobian_is_the_derivative_of_the_sole():
-    legs = load_talos_legs()
-    angles = np.random.default_rng(6).uniform(legs.lower, legs.upper, (20, 6))
-    jacobian = sole_jacobian(legs, angles)
-    step = 1e-6
-    for joint in range(6):
-        more = angles + step * np.eye(6)[joint]
-        less = angles - step * np.eye(6)[joint]
-        one, other = leg_posture(legs, more), leg_posture(legs, less)
-        numeric = (one.sole - other.sole) / (2.0 * step)
-        np.testing.assert_allclose(jacobian[:, :3, joint], numeric, atol=1e-6)
-        turn = Rotation.from_matrix(one.foot @ other.foot.transpose(0, 2, 1)).as_rotvec()
-        np.testing.assert_allclose(jacobian[:, 3:, joint], turn / (2.0 * step), atol=1e-6)
 
 
 def test_align_turns_the_normal_by_the_smallest_angle():
@@ -128,7 +113,7 @@ def test_align_turns_the_normal_by_the_smallest_angle():
 
 def test_candidates_are_all_samples_near_a_surface_best_first():
     settings = SamplingSettings(samples=4000, stages=(100_000,))
-    world = talos_world([stairs()], settings)
+    world = make_world(load_talos(), [stairs()], settings)
     guides = keep_configurations(world, [straight(2.0, climbing=True)], [0])
     guide, at, limb = np.array([0, 0]), np.array([8, 12]), np.array([0, 1])
     aim = guides.aim(guide, at, limb)

@@ -7,8 +7,7 @@ from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
 from jaxleas.dynamics import equilibrium_robustness
 from jaxleas.robots import load_talos
-from jaxleas.robots.leg_kinematics import leg_angles
-from jaxleas.robots.legs import load_talos_legs
+from jaxleas.robots.legs import leg_angles, load_talos_legs
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.scene import Scene
