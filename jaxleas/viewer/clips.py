@@ -11,6 +11,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.guide.standing import Pose
+from jaxleas.robots.effector import LIMB_OF_FOOT
 from jaxleas.types import GuidePath, InputError
 
 SECONDS_A_PHASE = 1.0  # a contact plan has no times of its own
@@ -120,7 +121,7 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
     footholds = []
     for index, (foot, point, yaw, time) in enumerate(landings):
         leaves = [later[3] for later in landings[index + 1 :] if later[0] == foot]
-        limb = {"LF": "left", "RF": "right"}[foot]
+        limb = LIMB_OF_FOOT.get(foot, foot)
         footholds.append(Foothold(limb, np.asarray(point), yaw, time, min(leaves, default=np.inf)))
     phases = [phase for phase in problem.phases[: max(len(made), 1)] if phase.root is not None]
     known = len(phases) == max(len(made), 1)

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxleas.robots import Robot
 from jaxleas.viewer.clips import Clip, Foothold
-from jaxleas.viewer.figure import INVALID, LIMBS, Figure, mesh_of_hull
+from jaxleas.viewer.figure import INVALID, LIMBS, OTHER_LIMB, Figure, mesh_of_hull
 from jaxleas.viewer.ground import Colour
 from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.ribbon import draw_path
@@ -108,7 +108,7 @@ class Playback:
     ) -> "tuple[GlbHandle, GlbHandle]":
         """Add a sole twice, both hidden: as it stands, and as it has been left."""
         sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
-        colours = shade(sole, np.array(LIMBS[foothold.limb], float))
+        colours = shade(sole, np.array(LIMBS.get(foothold.limb, OTHER_LIMB), float))
         nodes = (
             add_painted(self._server, f"{name}/standing", sole, colours),
             add_painted(self._server, f"{name}/left", sole, colours, LIFTED),

@@ -102,4 +102,4 @@ def decide(
 
 def cuts_of(steps: list[Step]) -> int:
     """Return the number of rows of all steps."""
-    return sum(len(step.b) for step in steps)
+    return sum(step.size for step in steps)

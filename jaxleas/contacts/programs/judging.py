@@ -7,7 +7,6 @@ from dataclasses import fields, replace
 import numpy as np
 
 from jaxleas.contacts.from_guide import (
-    BESIDE_ROOT,
     MOST_ASIDE,
     NoGroundError,
     kept_configurations,
@@ -18,6 +17,7 @@ from jaxleas.contacts.planner import PlannerError, mean_step
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.prefix import last_feasible_phase
 from jaxleas.contacts.programs.settings import PhaseSettings
+from jaxleas.contacts.reference import widest_reference
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, Verdict
@@ -114,7 +114,7 @@ def _problem(
         "every": settings.keep_every,
         "candidates": settings.candidates,
         "window": settings.window,
-        "first_foot": settings.first_foot,
+        "first_foot": _first_foot(robot, settings),
     }
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
@@ -127,15 +127,26 @@ def _problem(
         return problem_from_guide(_rows(path, np.arange(last + 1)), scene, **options), error
 
 
+def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
+    """Return the foot that moves first: of a robot without the default one, its first foot."""
+    names = [each.name for each in load_robot(robot).effectors]
+    return settings.first_foot if settings.first_foot in names or _is_set(settings) else None
+
+
+def _is_set(settings: PhaseSettings) -> bool:
+    return settings.first_foot != type(settings).model_fields["first_foot"].default
+
+
 def _rows(path: GuidePath, rows: np.ndarray) -> GuidePath:
     return GuidePath(*(getattr(path, each.name)[rows] for each in fields(path)))
 
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     """Return the scene's surfaces that a foot can come near to on the way."""
-    legs = [limb.range_of_motion.vertices[:, :2] for limb in load_robot(robot).limbs]
+    walker = load_robot(robot)
+    legs = [walker.limbs[index].range_of_motion.vertices[:, :2] for index in walker.feet]
     reach = max(float(np.linalg.norm(each, axis=1).max()) for each in legs)
-    reach = max(reach, window) + BESIDE_ROOT + MOST_ASIDE
+    reach = max(reach, window) + widest_reference(walker) + MOST_ASIDE
     places = np.asarray(path.position, dtype=np.float64)[:, :2]
     near = {}
     for name, vertices in scene.surfaces.items():

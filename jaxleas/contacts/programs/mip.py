@@ -14,11 +14,10 @@ from jaxleas.contacts.programs.judging import judge_by_program
 from jaxleas.contacts.programs.mixed_integer import Formulation
 from jaxleas.contacts.programs.placement import Targets
 from jaxleas.contacts.programs.settings import Cost, MipPlanSettings, MipSettings
+from jaxleas.contacts.reference import reference_foothold
+from jaxleas.robots import load_robot
 from jaxleas.types import Verdict
 from jaxleas.types.errors import InputError
-
-BESIDE_ROOT = 0.0848
-"""The reference foothold lies this far to the side of the root [m] (Talos)."""
 
 
 class Mip(Planner):
@@ -94,11 +93,9 @@ def plan_mip(
 
 
 def _reference_footholds(problem: ContactProblem, cost: Cost) -> Targets:
-    points = []
+    robot, points = load_robot(problem.robot), []
     for index, phase in enumerate(problem.phases):
         if phase.root is None:
             raise InputError(f"phase {index} has no root, which a cost needs: ask for cost 'none'")
-        side = BESIDE_ROOT if phase.foot == "LF" else -BESIDE_ROOT
-        left = np.array([-math.sin(phase.yaw), math.cos(phase.yaw)])
-        points.append(phase.root[:2] + side * left)
+        points.append(reference_foothold(robot, phase.foot, phase.root, phase.yaw)[:2])
     return Targets(np.array(points), "quadratic" if cost == "quadratic" else "linear")

@@ -25,8 +25,8 @@ class PhaseSettings(PlannerSettings):
     """surfaces in a window around the root, or in the moving leg's range of motion"""
     window: Annotated[float, Field(gt=0.0, lt=100.0)] = WINDOW
     """edge of the window [m]"""
-    first_foot: Literal["LF", "RF"] = "LF"
-    """which moves first"""
+    first_foot: str = "LF"
+    """which moves first; robots without a foot LF begin with their first one by default"""
     time_limit: PositiveFloat = 60.0
     """for one guide path [s]; when it is over, the verdict is undecided"""
 
