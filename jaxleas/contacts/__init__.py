@@ -15,6 +15,8 @@ from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.programs.prefix import last_feasible_phase
 from jaxleas.contacts.programs.sl1m import plan_sl1m
 from jaxleas.contacts.registry import PLANNERS, find_planner
+from jaxleas.contacts.stance_certificate import StanceCertificate, certify_stance
+from jaxleas.contacts.stances import stances_of
 from jaxleas.contacts.surfaces import ContactSurface
 
 __all__ = [
@@ -26,10 +28,12 @@ __all__ = [
     "Phase",
     "PlannerError",
     "Posture",
+    "StanceCertificate",
     "StepPolytopes",
     "Violation",
     "certify",
     "certify_postures",
+    "certify_stance",
     "find_planner",
     "last_feasible_phase",
     "load_step_polytopes",
@@ -40,6 +44,7 @@ __all__ = [
     "read_guide_path",
     "read_plan",
     "read_problem",
+    "stances_of",
     "write_plan",
     "write_problem",
 ]

@@ -44,8 +44,9 @@ def draw_plan(
     """Draw a plan, or where planning fails, in two views.
 
     Surfaces are grey, the guide blue, left feet red and right feet yellow, those of other robots in
-    further colours, the centre of mass black. Without a plan, the candidates of the first step that cannot be made are outlined, and
-    the reason is the title, and the feet are those of the phases before, where these are given.
+    further colours, the centre of mass black. Without a plan, the candidates of the first step that
+    cannot be made are outlined, and the reason is the title, and the feet are those of the phases
+    before, where these are given.
 
     Args:
         path: of the picture (.png, .svg, .pdf).

@@ -53,7 +53,7 @@ def make_polytope(A: np.ndarray, b: np.ndarray) -> Polytope:
 
 
 def read_polytopes(
-    where: str, content: object, model: str, effectors: Sequence[str]
+    where: str, content: object, model: str, effectors: Sequence[str], others: Sequence[str] = ()
 ) -> StepPolytopes:
     """Return the polytopes of a parsed {"RF_in_LF": {"A", "b"}, ...}.
 
@@ -62,11 +62,13 @@ def read_polytopes(
         content: parsed object.
         model: "feet" or "two_com".
         effectors: names of the effectors that step or stand.
+        others: names of effectors whose polytopes may be there, too.
 
     Raises:
         InputError: one is missing or malformed; says which.
     """
-    needed, known = polytope_names(effectors, model), polytope_names(effectors, "two_com")
+    needed = polytope_names(effectors, model)
+    known = polytope_names([*effectors, *others], "two_com")
     if not isinstance(content, dict):
         raise InputError(f"{where} must be an object with {', '.join(needed)}, each {{A, b}}")
     missing = [name for name in needed if name not in content]
@@ -109,8 +111,12 @@ def _polytope(where: str, content: object) -> Polytope:
 
 
 @cache
-def load_step_polytopes(robot: str) -> StepPolytopes:
+def load_step_polytopes(robot: str, effectors: tuple[str, ...] | None = None) -> StepPolytopes:
     """Return the step polytopes of a robot, which its file holds.
+
+    Args:
+        robot: name of the robot.
+        effectors: names of the effectors that step or stand; its feet by default.
 
     Raises:
         InputError: there are none for this robot.
@@ -123,9 +129,11 @@ def load_step_polytopes(robot: str) -> StepPolytopes:
     if not steps:
         raise InputError(_no_steps(robot))
     content = {name: {"A": each.normals, "b": each.offsets} for name, each in steps.items()}
-    feet = [described.effectors[index].name for index in described.feet]
+    every = [each.name for each in described.effectors]
+    used = effectors or [every[index] for index in described.feet]
+    others = [name for name in every if name not in used]
     model = "two_com" if any(map(_is_com, steps)) else "feet"
-    return read_polytopes(f"robot {robot}: steps", content, model, feet)
+    return read_polytopes(f"robot {robot}: steps", content, model, used, others)
 
 
 def _no_steps(robot: str) -> str:

@@ -226,7 +226,7 @@ def _polytopes(
 ) -> StepPolytopes:
     given = content.get("polytopes")
     if given is None:
-        return load_step_polytopes(content["robot"])
+        return load_step_polytopes(content["robot"], effectors)
     return read_polytopes(f"{where}: polytopes", given, model, effectors)
 
 
