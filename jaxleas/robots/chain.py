@@ -76,6 +76,20 @@ class SerialChain:
         return tuple(bool(np.any(each != np.eye(3))) for each in self.rotations)
 
     @cached_property
+    def turned_tip(self) -> bool:
+        """Whether the effector's frame is turned against the last link."""
+        return bool(np.any(self.tip.rotation != np.eye(3)))
+
+    @cached_property
+    def offsets(self) -> tuple[tuple[tuple[int, float], ...], ...]:
+        """Nonzero coordinates of each joint's position, then of the tip's, with their index [m]."""
+        places = [*self.positions, self.tip.position]
+        return tuple(
+            tuple((index, float(place[index])) for index in range(3) if place[index])
+            for place in places
+        )
+
+    @cached_property
     def along(self) -> tuple[int | None, ...]:
         """Index of the coordinate axis that each joint turns about; None for other axes."""
         return tuple(
@@ -137,17 +151,16 @@ def chain_posture(chain: SerialChain, angles: Float[np.ndarray, "*batch J"]) -> 
     before = np.broadcast_to(np.eye(3), (*batch, 3, 3))
     place = np.zeros((*batch, 3))
     for joint in range(count):
-        place = _moved(place, before, chain.positions[joint])
+        place = _moved(place, before, chain.offsets[joint])
         origins[..., joint, :] = place
         if chain.turned[joint]:
             before = before @ chain.rotations[joint]
         frame = frames[..., joint, :, :]
         _turn(before, chain, joint, cosines[..., joint, :], sines[..., joint, :], frame)
         before = frame
-    tip = _moved(place, before, chain.tip.position)
-    turn = chain.tip.rotation
+    tip = _moved(place, before, chain.offsets[-1])
     return ChainPosture(
-        frames, origins, tip, before if np.array_equal(turn, np.eye(3)) else before @ turn
+        frames, origins, tip, before @ chain.tip.rotation if chain.turned_tip else before
     )
 
 
@@ -160,13 +173,17 @@ def chain_jacobian(chain: SerialChain, posture: ChainPosture) -> Float[np.ndarra
     for joint, along in enumerate(chain.along):
         frame = posture.frames[..., joint, :, :]
         axes[..., joint, :] = frame @ chain.axes[joint] if along is None else frame[..., along]
-    linear = np.cross(axes, posture.tip[..., None, :] - posture.origins)
-    return np.swapaxes(np.concatenate([linear, axes], axis=-1), -1, -2)
+    x, y, z = (axes[..., index] for index in range(3))
+    arms = posture.tip[..., None, :] - posture.origins
+    u, v, w = (arms[..., index] for index in range(3))
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u, x, y, z], axis=-2)
 
 
-def _moved(place: np.ndarray, frame: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    for index in np.flatnonzero(offset):
-        place = place + offset[index] * frame[..., index]
+def _moved(
+    place: np.ndarray, frame: np.ndarray, offset: tuple[tuple[int, float], ...]
+) -> np.ndarray:
+    for index, length in offset:
+        place = place + length * frame[..., index]
     return place
 
 

@@ -109,6 +109,7 @@ def leg_angles(
     legs: LegModel,
     sole: Float[np.ndarray, "*batch 3"],
     rotation: Float[np.ndarray, "*batch 3 3"],
+    start: Float[np.ndarray, "*batch J"] | None = None,
 ) -> tuple[Float[np.ndarray, "*batch J"], Bool[np.ndarray, "*batch"]]:
     """Return the angles that bring the left sole to a pose, and whether it is in reach.
 
@@ -116,8 +117,9 @@ def leg_angles(
         legs: pair of legs.
         sole: position of the sole in the root frame [m].
         rotation: orientation of the sole in the root frame.
+        start: a posture near each pose, where one is known [rad].
     """
-    return legs.left.inverse(sole, rotation)
+    return legs.left.inverse(sole, rotation, start)
 
 
 def mass_moment(

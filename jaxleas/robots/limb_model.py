@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.robots.chain import ChainPosture, SerialChain, chain_posture
-from jaxleas.robots.numeric_inverse import draw_starts, numeric_inverse
+from jaxleas.robots.numeric_inverse import draw_starts, newton_inverse, numeric_inverse
 from jaxleas.robots.spherical_leg import SphericalLeg
 from jaxleas.types.errors import InputError
 
@@ -59,6 +59,7 @@ class LimbModel:
         capsules: shapes that keep clear of the other limbs.
         com_reach: where the centre of mass of the whole robot can be while the effector stands: in
             the effector's frame turned by its yaw alone [m].
+        starts: postures that searches for an inverse start from [rad]; drawn where None is given.
 
     Raises:
         InputError: shapes disagree, or a mass is negative.
@@ -71,6 +72,7 @@ class LimbModel:
     boxes: tuple[LinkBox, ...]
     capsules: tuple[Capsule, ...]
     com_reach: Polytope
+    starts: Float[np.ndarray, "S J"] | None = None
 
     def __post_init__(self) -> None:
         count = len(self.chain)
@@ -100,6 +102,7 @@ class LimbModel:
         self,
         position: Float[np.ndarray, "*batch 3"],
         rotation: Float[np.ndarray, "*batch 3 3"],
+        start: Float[np.ndarray, "*batch J"] | None = None,
     ) -> tuple[Float[np.ndarray, "*batch J"], Bool[np.ndarray, "*batch"]]:
         """Return joint angles that bring the effector to a pose.
 
@@ -109,6 +112,8 @@ class LimbModel:
         Args:
             position: of the effector in the root frame [m].
             rotation: orientation of the effector in the root frame.
+            start: a posture near each pose, where one is known: the only one that a search then
+                starts from [rad].
 
         Returns:
             Angles [rad], and whether the pose is in reach within the joint limits.
@@ -117,14 +122,14 @@ class LimbModel:
             angles, in_reach = self._spherical.inverse(position, rotation)
             within = ((angles >= self.chain.lower) & (angles <= self.chain.upper)).all(axis=-1)
             return angles, in_reach & within
-        batch = position.shape[:-1]
-        angles, reached = numeric_inverse(
-            self.chain,
-            self._starts,
-            position.reshape(-1, 3),
-            rotation.reshape(-1, 3, 3) if len(self.chain) >= 6 else None,
-        )
-        return angles.reshape(*batch, len(self.chain)), reached.reshape(batch)
+        batch, count = position.shape[:-1], len(self.chain)
+        flat = position.reshape(-1, 3)
+        turn = rotation.reshape(-1, 3, 3) if count >= 6 else None
+        if start is None:
+            angles, reached = numeric_inverse(self.chain, self._starts, flat, turn)
+        else:
+            angles, reached = newton_inverse(self.chain, start.reshape(-1, count), flat, turn)
+        return angles.reshape(*batch, count), reached.reshape(batch)
 
     def mass_moment(
         self, frames: Float[np.ndarray, "*batch J 3 3"], origins: Float[np.ndarray, "*batch J 3"]
@@ -151,6 +156,8 @@ class LimbModel:
                 for each in self.capsules
             ),
             com_reach=self.com_reach.mirrored(),
+            # Limbs that are mirror images find mirror images.
+            starts=self._starts * self.chain.mirror_signs,
         )
 
     @cached_property
@@ -159,7 +166,7 @@ class LimbModel:
 
     @cached_property
     def _starts(self) -> Float[np.ndarray, "S J"]:
-        return draw_starts(self.chain, self.reference)
+        return draw_starts(self.chain, self.reference) if self.starts is None else self.starts
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,8 @@ REACHED = 1e-9
 STARTS = 512
 """Postures among which each pose finds the ones it starts from."""
 _ATTEMPTS = 6
-_STEPS = 30
+_STEPS = 20
+_PATIENCE = 6  # steps after which a search must have halved its error, or is given up
 _DAMPING = 1e-3  # of the step, as a share of the remaining error
 _LONGEST = 0.4  # a joint turns by no more than this in a step [rad]
 _ARM = 0.3  # a turn of one radian counts as much as this distance [m]
@@ -56,7 +57,7 @@ def numeric_inverse(
 def _search(
     chain: SerialChain, starts: np.ndarray, position: np.ndarray, rotation: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    near = _nearest(chain, starts, position, rotation)
+    near = nearest_starts(chain, starts, position, rotation)
     angles, reached = starts[near[:, 0]].copy(), np.zeros(len(position), dtype=bool)
     # No pose is in reach further from the first joint than the stretched chain is long.
     offsets = np.concatenate([chain.positions[1:], chain.tip.position[None]])
@@ -68,11 +69,11 @@ def _search(
             break
         turn = None if rotation is None else rotation[open_]
         begin = starts[near[open_, attempt]]
-        angles[open_], reached[open_] = _newton(chain, begin, position[open_], turn)
+        angles[open_], reached[open_] = newton_inverse(chain, begin, position[open_], turn)
     return angles, reached
 
 
-def _nearest(
+def nearest_starts(
     chain: SerialChain, starts: np.ndarray, position: np.ndarray, rotation: np.ndarray | None
 ) -> np.ndarray:
     """Return, for each pose, the indices of the starts that come nearest to it, best first."""
@@ -88,21 +89,37 @@ def _nearest(
     return np.take_along_axis(best, order, axis=1)
 
 
-def _newton(
-    chain: SerialChain, angles: np.ndarray, position: np.ndarray, rotation: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray]:
+def newton_inverse(
+    chain: SerialChain,
+    angles: Float[np.ndarray, "N J"],
+    position: Float[np.ndarray, "N 3"],
+    rotation: Float[np.ndarray, "N 3 3"] | None,
+) -> tuple[Float[np.ndarray, "N J"], Bool[np.ndarray, " N"]]:
+    """Return what `numeric_inverse` returns, each search from one start.
+
+    Args:
+        chain: chain of joints.
+        angles: posture that each search starts from [rad].
+        position: of the effector in the root frame [m].
+        rotation: orientation of the effector in the root frame; None where any will do.
+    """
     angles, going = angles.copy(), np.arange(len(angles))
     reached = np.zeros(len(angles), dtype=bool)
     used = 3 if rotation is None else 6
-    for _ in range(_STEPS):
+    first = np.zeros(len(angles))
+    for step_number in range(_STEPS):
         posture = chain_posture(chain, angles[going])
         error = position[going] - posture.tip
         if rotation is not None:
             turn = _turn_between(posture.tip_rotation, rotation[going])
             error = np.concatenate([error, turn], axis=1)
         left = np.abs(error).max(axis=1)
+        if step_number == 0:
+            first = left.copy()
         done = left <= REACHED
         reached[going[done]] = True
+        if step_number == _PATIENCE:
+            done = done | (left > 0.5 * first[going])
         if done.all():
             break
         going, error, left = going[~done], error[~done], left[~done]

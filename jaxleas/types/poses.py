@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -81,7 +82,7 @@ class Pose:
         """Return the pose with a given rotation matrix."""
         return cls(position, quaternion_of(rotation))
 
-    @property
+    @cached_property
     def rotation(self) -> Float[np.ndarray, "*batch 3 3"]:
         """The rotation matrix, whose columns are the body's axes."""
         return matrix_of(self.quaternion)

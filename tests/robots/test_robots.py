@@ -6,8 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from urdfs import published
 
-from jaxleas.robots import Effector, Limb, load_robot, load_talos, read_robot, write_robot
+from jaxleas.robots import (
+    Effector,
+    Limb,
+    load_robot,
+    load_talos,
+    read_robot,
+    robot_names,
+    write_robot,
+)
+from jaxleas.robots.legs import legs_of
 from jaxleas.types import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -190,43 +200,88 @@ def test_a_damaged_file_is_refused_with_what_is_wrong(talos, tmp_path, change, s
         read_robot(path)
 
 
-def test_the_shipped_file_is_small_and_names_its_maker():
-    shipped = ROOT / "jaxleas/robots/data/talos.json"
+@pytest.mark.parametrize("name", robot_names())
+def test_shipped_files_are_small_and_name_their_makers(name):
+    shipped = ROOT / f"jaxleas/robots/data/{name}.json"
     assert shipped.stat().st_size < 100_000
-    assert "make_talos.py" in json.loads(shipped.read_text())["about"]
+    assert f"make_{name}.py" in json.loads(shipped.read_text())["about"]
+    assert load_robot(name).name == name
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_shipped_robots_stand_in_reach_of_everything_that_plans_for_them(name):
+    robot = load_robot(name)
+    legs = legs_of(robot)
+    assert abs(legs.mass - robot.mass) < 0.01
+    left, right = robot.references
+    np.testing.assert_allclose(left, right * [1, -1, 1])
+    assert robot.steps["RF_in_LF"].contains(right - left, 1e-3)
+    com = reference_com(robot)
+    for foot, place, limb in zip(("LF", "RF"), robot.references, robot.limbs, strict=True):
+        np.testing.assert_allclose(limb.model.posture(limb.model.reference).tip, place, atol=0.01)
+        assert robot.steps[f"COM_in_{foot}"].contains(com - place)
+        assert limb.model.com_reach.contains(com - place)
+        assert np.abs((com - place)[0]) < robot.foot_half_size[0], "it would fall over"
+        for height in robot.start_heights:
+            under = np.array([*place[:2], -robot.walking_height - height])
+            assert limb.range_of_motion.contains(under)
+
+
+def reference_com(robot) -> np.ndarray:
+    moment, mass = robot.body.mass * robot.body.com, robot.body.mass
+    for limb in robot.limbs:
+        posture = limb.model.posture(limb.model.reference)
+        moment = moment + limb.model.mass_moment(posture.frames, posture.origins)
+        mass += limb.model.link_mass.sum()
+    return moment / mass
 
 
 @pytest.fixture(scope="module")
-def maker():
+def makers():
     pytest.importorskip("pinocchio")
     sys.path.insert(0, str(ROOT / "scripts"))
     try:
+        import make_g1
         import make_talos
+        import robot_reach
     finally:
         sys.path.pop(0)
-    return make_talos
+    return robot_reach, {"talos": make_talos.RECIPE, "g1": make_g1.RECIPE}
 
 
-def test_fresh_samples_of_the_urdf_lie_in_the_shipped_polytope(talos, maker):
-    import pinocchio as pin
-
-    model = pin.buildModelFromUrdf(str(maker.find_urdf()))
-    configurations = maker.sample_configurations(model, 200_000, seed=99)
-    soles, normals = maker.place_soles(model, configurations)
-    standing = soles[maker.keep_standing(soles, normals)]
+@pytest.mark.parametrize("name", ["talos", "g1"])
+def test_fresh_samples_of_the_urdf_lie_in_the_shipped_polytope(name, makers):
+    reach, recipes = makers
+    recipe = recipes[name]
+    published(recipe.urdf)
+    configurations = reach.sample_configurations(recipe, 200_000, seed=99)
+    soles, normals = reach.place_soles(recipe, configurations)
+    standing = soles[reach.keep_standing(recipe, soles, normals)]
     assert len(standing) > 2000
+    polytope = load_robot(name).limbs[0].range_of_motion
     # Other samples than the maker's reach a few millimetres further here and there.
-    inside = [talos.limbs[0].range_of_motion.contains(standing, t).mean() for t in (0, 0.005, 0.02)]
+    inside = [polytope.contains(standing, t).mean() for t in (0, 0.005, 0.02)]
     assert inside[0] > 0.99
     assert inside[1] > 0.999
     assert inside[2] == 1.0
 
 
 @pytest.mark.slow
-def test_the_maker_makes_the_shipped_file(maker, tmp_path):
-    made = tmp_path / "talos.json"
-    script = ROOT / "scripts/make_talos.py"
-    subprocess.run([sys.executable, script, "--out", made], check=True, capture_output=True)
-    made, shipped = read_robot(made), load_talos()
+@pytest.mark.parametrize("name", ["talos", "g1"])
+def test_the_maker_makes_the_shipped_file(name, makers, tmp_path):
+    published(makers[1][name].urdf)
+    path = tmp_path / "made.json"
+    script = ROOT / f"scripts/make_{name}.py"
+    subprocess.run([sys.executable, script, "--out", path], check=True, capture_output=True)
+    made, shipped = read_robot(path), load_robot(name)
     for one, other in zip(made.limbs, shipped.limbs, strict=True):
         np.testing.assert_allclose(one.range_of_motion.normals, other.range_of_motion.normals)
+        np.testing.assert_array_equal(one.model.reference, other.model.reference)
+        np.testing.assert_array_equal(one.model.com_reach.offsets, other.model.com_reach.offsets)
+        assert one.model.boxes == other.model.boxes
+    assert made.body.mass == shipped.body.mass
+    for key, polytope in shipped.steps.items():
+        faces = [
+            np.column_stack([each.normals, each.offsets]) for each in (made.steps[key], polytope)
+        ]
+        np.testing.assert_allclose(*(each[np.lexsort(each.T)] for each in faces))

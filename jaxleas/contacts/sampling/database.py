@@ -78,7 +78,7 @@ def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
         normal = np.array([np.sin(x), np.sin(y), 0.0])
         normal[2] = np.sqrt(1.0 - normal @ normal)
         aligned = align(posture.tip_rotation, np.broadcast_to(normal, (samples, 3)))
-        usable |= leg_angles(legs, posture.tip, aligned)[1]
+        usable |= leg_angles(legs, posture.tip, aligned, angles)[1]
     kept = np.flatnonzero(usable)
     kept = kept[np.argsort(posture.tip[kept, 2], kind="stable")]
     jacobian = chain_jacobian(legs.left.chain, leg_posture(legs, angles[kept]))
