@@ -79,7 +79,7 @@ def problem_from_guide(
     """
     _require_usable(guide, every, window)
     described = load_robot(robot)
-    feet = [described.effectors[index].name for index in described.feet]
+    feet = described.foot_names
     turn = _first(described, feet, first_foot)
     surfaces = {
         name: make_surface(vertices, f"surface '{name}' of the scene")
@@ -164,8 +164,7 @@ class _Finder:
             half = 0.5 * window
             square = Polytope.from_box(Box((-half, -half, low), (half, half, high)))
             reach = [square] * len(reach)
-        names = (robot.effectors[index].name for index in robot.feet)
-        self.reach: dict[str, Polytope] = dict(zip(names, reach, strict=True))
+        self.reach: dict[str, Polytope] = dict(zip(robot.foot_names, reach, strict=True))
 
     def find(
         self, root: np.ndarray, yaw: float, foot: str
@@ -195,7 +194,7 @@ def _initial(
     legs = [robot.limbs[index].range_of_motion for index in robot.feet]
     lowest = min(float(reach.vertices[:, 2].min()) for reach in legs)
     poses = {}
-    for foot in (robot.effectors[index].name for index in robot.feet):
+    for foot in robot.foot_names:
         place = reference_foothold(robot, foot, root, yaw)
         found = [nearest_below(surface, place) for surface in surfaces.values()]
         reachable = [
@@ -235,7 +234,7 @@ def nearest_below(
     return np.array([*target, z]), float(np.linalg.norm(target - place[:2]))
 
 
-def _first(robot: Robot, feet: list[str], first_foot: str | None) -> int:
+def _first(robot: Robot, feet: tuple[str, ...], first_foot: str | None) -> int:
     """Return the number of the foot that moves first."""
     if len(feet) < 2:
         raise InputError(

@@ -53,7 +53,7 @@ def plan_sampling(
     require_time_limit(time_limit)
     settings, robot = settings or SamplingSettings(), robot or load_robot("talos")
     world = make_world(robot, [scene], settings)
-    feet = [effector.name for effector in robot.effectors]
+    feet = robot.foot_names
     begin = time.perf_counter()
     walk = _TimedWalk(world, guide, begin + time_limit)
     _require_over(scene, guide)

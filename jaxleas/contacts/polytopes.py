@@ -130,7 +130,7 @@ def load_step_polytopes(robot: str, effectors: tuple[str, ...] | None = None) ->
         raise InputError(_no_steps(robot))
     content = {name: {"A": each.normals, "b": each.offsets} for name, each in steps.items()}
     every = [each.name for each in described.effectors]
-    used = effectors or [every[index] for index in described.feet]
+    used = effectors or described.foot_names
     others = [name for name in every if name not in used]
     model = "two_com" if any(map(_is_com, steps)) else "feet"
     return read_polytopes(f"robot {robot}: steps", content, model, used, others)

@@ -160,7 +160,7 @@ def _effectors(where: str, named: list[str], robot: str) -> list[str]:
         if len(named) < 2 or not all(named):
             raise InputError(f"{where}: initial must say where two or more feet stand") from None
         return named
-    feet = [known.effectors[index].name for index in known.feet]
+    feet = known.foot_names
     others = [each.name for each in known.effectors if each.name not in feet]
     wrong = [name for name in named if name not in (*feet, *others)]
     if wrong or not set(feet) <= set(named):

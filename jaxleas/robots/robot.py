@@ -107,6 +107,11 @@ class Robot:
         """Indices of the limbs that carry a walking robot."""
         return tuple(index for index, each in enumerate(self.effectors) if each.stands)
 
+    @property
+    def foot_names(self) -> tuple[str, ...]:
+        """Names of the effectors that carry a walking robot, in the order of the limbs."""
+        return tuple(self.effectors[index].name for index in self.feet)
+
     def effector_index(self, name: str) -> int:
         """Return the index of an effector.
 

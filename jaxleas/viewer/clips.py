@@ -22,7 +22,7 @@ class Foothold:
     """A foot on the ground.
 
     Attributes:
-        limb: "left" or "right".
+        limb: name of the limb, "left" or "right" of bipeds.
         position: of the middle of the sole [m].
         yaw: heading [rad].
         time: from which on it stands there [s].
@@ -48,6 +48,7 @@ class Clip:
         valid: whether each configuration is.
         footholds: in order of time; none for a guide path.
         half_size: of a sole [m].
+        robot: name of the robot that moves; None where the file does not say.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Clip:
     valid: Bool[np.ndarray, " T"]
     footholds: tuple[Foothold, ...] = ()
     half_size: tuple[float, float] = (0.1, 0.06)
+    robot: str | None = None
 
     @property
     def duration(self) -> float:
@@ -137,4 +139,5 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
         np.ones(count, bool),
         tuple(footholds),
         problem.foot_half_size,
+        problem.robot,
     )

@@ -21,7 +21,7 @@ def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) ->
     guide, here = np.zeros(1, dtype=np.int64), np.array([at])
     kept = maintain_contacts(world, guides.roots[guides.flat(guide, here)], stances[guide])
     sentences = []
-    feet = [effector.name for effector in world.robot.effectors]
+    feet = world.robot.foot_names
     for limb, foot in enumerate(feet):
         others = [each for each in range(len(feet)) if each != limb]
         if stuck := [feet[other] for other in others if not kept.limb[0, other]]:
