@@ -1,26 +1,27 @@
 """The certificate of postures: feet, legs, centre of mass and equilibrium, worked out again.
 
 Shares no code with the sampling-based planner: joint by joint, posture by posture, with general
-linear programs. Only the joint angles come from the closed-form inverse; they are a witness, held
-within the joint limits here and then checked by the forward kinematics below.
+linear programs and exact friction cones. Only the joint angles come from the limb's inverse; they
+are a witness, held within the joint limits here and then checked by the forward kinematics below.
 """
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 
 from jaxleas.contacts.certificate import TOLERANCE, Violation
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_model import Stood, limb_of, stand, two_point_margin
+from jaxleas.dynamics.contact_points import ContactPoints
+from jaxleas.dynamics.exact_cone import exact_robustness
 from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
 _SAME_FORCE = 1e-6
-"""A recorded robustness may differ by this fraction from the one worked out again."""
+"""A recorded robustness may exceed the one worked out again by this fraction."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ class PostureCertificate:
 
     Attributes:
         worst: the constraint that is violated most; its `phase` is the posture's number.
-        least_robustness: of all postures, worked out again [N].
-        robustness_error: the largest relative difference to what the plan says.
+        least_robustness: robustness that all postures have with exact friction cones, at least [N].
+        robustness_error: the largest fraction by which the plan states more than there is.
     """
 
     worst: Violation
@@ -51,7 +52,9 @@ class PostureCertificate:
         if self.least_robustness < 0.0:
             return f"has a posture out of equilibrium, by {-self.least_robustness:.3g} N"
         if self.robustness_error > _SAME_FORCE:
-            return f"states a robustness that is wrong by a fraction {self.robustness_error:.2g}"
+            return (
+                f"states a robustness that is wrong: too large by {self.robustness_error:.2g} of it"
+            )
         return ""
 
 
@@ -62,8 +65,9 @@ def certify_postures(
 
     Each foot lies on its surface; one foot moves at a time; each leg reaches its foothold within
     its joint limits; the centre of mass is where the plan says; it can be over the standing foot
-    while the other one moves, in reach of both (T app. B); the posture is in equilibrium with the
-    robustness that the plan states. Collisions are not judged again.
+    while the other one moves, in reach of both (T app. B); the posture is in equilibrium and has
+    the robustness that the plan states, with exact friction cones: planners that linearise the
+    cones from inside state less than there is, never more. Collisions are not judged again.
 
     Args:
         plan: with postures.
@@ -89,9 +93,9 @@ def certify_postures(
         metres, constraint = max(found)
         if metres > worst.metres:
             worst = Violation(float(metres), number, constraint)
-        robustness = _robustness(stood, robot.friction)
+        robustness = _robustness(stood, robot, enough=max(said, 0.0))
         least = min(least, robustness)
-        error = max(error, abs(robustness - said) / max(abs(robustness), 1.0))
+        error = max(error, (said - robustness) / max(abs(robustness), 1.0))
         before = posture, stood
     return PostureCertificate(worst, least, error)
 
@@ -114,41 +118,22 @@ def _change(
     return found
 
 
-def _robustness(stood: Stood, friction: float) -> float:
-    """max b0 with G b = m [-g; c x -g], b_i >= b0, times |(sum_j g_j) x g_1| of one point.
-
-    Torques about the world's origin; generators and points of their own.
-    """
-    columns, scale = [], 0.0
-    for foot in stood.rotations:
-        normal = stood.rotations[foot][:, 2]
-        first = np.array([-normal[2], 0.0, normal[0]])  # n x e_y
-        first = first / np.linalg.norm(first)
-        second = np.cross(normal, first)
-        cone = []
-        for k in range(4):
-            angle = math.pi / 4 + k * math.pi / 2
-            g = normal + friction * (math.cos(angle) * first + math.sin(angle) * second)
-            cone.append(g / np.linalg.norm(g))
-        scale = float(np.linalg.norm(np.cross(np.sum(cone, axis=0), cone[0])))
-        for point in stood.corners[foot]:
-            columns += [np.concatenate([g, np.cross(point, g)]) for g in cone]
-    G = np.column_stack(columns)
-    # In units of the weight: the solver's tolerances are absolute, and ours is a millionth.
-    newtons = stood.mass * 9.81
-    weight = np.array([0.0, 0.0, 1.0])
-    wrench = np.concatenate([weight, np.cross(stood.com, weight)])
-    count = G.shape[1]
-    answer = linprog(
-        np.append(np.zeros(count), -1.0),
-        A_ub=np.column_stack([-np.eye(count), np.ones(count)]),
-        b_ub=np.zeros(count),
-        A_eq=np.column_stack([G, np.zeros(6)]),
-        b_eq=wrench,
-        bounds=[(None, None)] * (count + 1),
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+def _robustness(stood: Stood, robot: Robot, enough: float) -> float:
+    """Return the robustness with exact friction cones; any lower bound from `enough` on will do."""
+    points, normals, ahead, friction = [], [], [], []
+    for foot, rotation in stood.rotations.items():
+        count = len(stood.corners[foot])
+        points.append(stood.corners[foot])
+        normals.append(np.tile(rotation[:, 2], (count, 1)))
+        ahead.append(np.tile(rotation[:, 0], (count, 1)))
+        friction.append(np.full(count, robot.effector(foot).friction))
+    contacts = ContactPoints(
+        np.concatenate(points),
+        np.concatenate(normals),
+        np.concatenate(friction),
+        np.concatenate(ahead),
     )
-    return float(answer.x[-1]) * newtons * scale if answer.status == 0 else -math.inf
+    return exact_robustness(contacts, stood.com, mass=stood.mass, enough=enough)
 
 
 def _require_fitting(plan: ContactPlan, guide: GuidePath, scene: Scene) -> tuple[Posture, ...]:

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.dynamics.contact_points import ContactPoints
 from jaxleas.dynamics.equilibrium_lp import robustness_by_linear_program
 from jaxleas.dynamics.friction import friction_generators, margin_of_generator
 from jaxleas.dynamics.small_lp import maximise
@@ -22,16 +23,9 @@ def equilibrium_robustness(
     friction: float,
     acceleration: Float[np.ndarray, "*batch 3"] | None = None,
 ) -> Float[np.ndarray, "*batch"]:
-    """Return the robustness of equilibrium [N]: positive inside, negative outside.
+    """Return the robustness of equilibrium [N] with four generators that turn with the world.
 
-    With the generators G of all contact points' friction cones, it is b0 |(sum_j g_j) x g_1| for
-
-        max b0  such that  G b = m [a - g; c x (a - g)],  b_i >= b0
-
-    (Del Prete et al. 2016, "Fast algorithms to test robust static equilibrium"; generators of one
-    point in the product). The dual of this has one variable for each dimension but one of the
-    wrench and is solved for the whole batch together. Every answer is certified: its basis must
-    be primal and dual feasible. What fails, or pulls at the robot from above, goes to HiGHS.
+    `robustness_of` is the same for contacts whose generators turn with them.
 
     Args:
         points: of contact, in the world [m].
@@ -44,31 +38,64 @@ def equilibrium_robustness(
     Raises:
         InputError: shapes disagree, or a number is not finite or out of range.
     """
-    batch = _require(points, normals, com, mass, friction, acceleration)
-    flat_points = points.reshape(-1, *points.shape[-2:])
-    flat_normals = normals.reshape(flat_points.shape)
-    flat_com = com.reshape(-1, 3)
+    contacts = ContactPoints(points, normals, friction)
+    return robustness_of(contacts, com, mass=mass, acceleration=acceleration)
+
+
+def robustness_of(
+    contacts: ContactPoints,
+    com: Float[np.ndarray, "*batch 3"],
+    *,
+    mass: float,
+    acceleration: Float[np.ndarray, "*batch 3"] | None = None,
+) -> Float[np.ndarray, "*batch"]:
+    """Return the robustness of equilibrium [N]: positive inside, negative outside.
+
+    With the generators G of all contact points' friction cones, it is b0 |(sum_j g_j) x g_1| for
+
+        max b0  such that  G b = m [a - g; c x (a - g)],  b_i >= b0
+
+    (Del Prete et al. 2016, "Fast algorithms to test robust static equilibrium"; generators of one
+    point in the product). The dual of this has one variable for each dimension but one of the
+    wrench and is solved for the whole batch together. Every answer is certified: its basis must
+    be primal and dual feasible. What fails, or pulls at the robot from above, goes to HiGHS.
+
+    Args:
+        contacts: points of contact.
+        com: centre of mass in the world [m].
+        mass: mass of the robot [kg].
+        acceleration: acceleration of the centre of mass [m/s^2]; none for static equilibrium.
+
+    Raises:
+        InputError: shapes disagree, or a number is not finite or out of range.
+    """
+    _require(contacts, com, mass, acceleration)
+    flat, flat_com = contacts.flat(), com.reshape(-1, 3)
     lift = np.array([0.0, 0.0, GRAVITY])
     force = mass * (lift + (0.0 if acceleration is None else acceleration.reshape(-1, 3)))
     force = np.broadcast_to(force, flat_com.shape)
-    wrenches = contact_wrenches(flat_points, flat_normals, flat_com, friction)
+    wrenches = contact_wrenches(flat, flat_com)
     least, certified = _solve(wrenches, force)
     for index in np.flatnonzero(~certified):
         least[index] = robustness_by_linear_program(wrenches[index], force[index])
-    return (least * margin_of_generator(friction)).reshape(batch)
+    return (least * margin_of_generator(flat)).reshape(contacts.batch)
 
 
 def contact_wrenches(
-    points: Float[np.ndarray, "N P 3"],
-    normals: Float[np.ndarray, "N P 3"],
-    com: Float[np.ndarray, "N 3"],
-    friction: float,
+    contacts: ContactPoints, com: Float[np.ndarray, "N 3"]
 ) -> Float[np.ndarray, "N 6 G"]:
-    """Return the wrench of each generator about the centre of mass: force over torque."""
-    forces = friction_generators(normals, friction)
-    arms = (points - com[:, None])[:, :, None]
+    """Return the wrench of each generator about the centre of mass: force over torque.
+
+    Args:
+        contacts: points of contact, with one batch axis.
+        com: centre of mass in the world [m].
+    """
+    forces = friction_generators(
+        contacts.normals, contacts.friction, contacts.ahead, contacts.generators
+    )
+    arms = (contacts.points - com[:, None])[:, :, None]
     torques = cross(arms, forces)
-    count = len(points)
+    count = len(com)
     wrenches = np.concatenate([forces.reshape(count, -1, 3), torques.reshape(count, -1, 3)], axis=2)
     return wrenches.transpose(0, 2, 1)
 
@@ -135,31 +162,20 @@ def _frames_along(direction: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, "N 3
 
 
 def _require(
-    points: np.ndarray,
-    normals: np.ndarray,
-    com: np.ndarray,
-    mass: float,
-    friction: float,
-    acceleration: np.ndarray | None,
-) -> tuple[int, ...]:
-    batch = points.shape[:-2]
-    if points.ndim < 2 or points.shape != normals.shape or com.shape != (*batch, 3):
+    contacts: ContactPoints, com: np.ndarray, mass: float, acceleration: np.ndarray | None
+) -> None:
+    if com.shape != (*contacts.batch, 3):
         raise InputError(
-            f"points {points.shape}, normals {normals.shape} and centre of mass {com.shape} do not "
-            "belong together: give [..., P, 3], [..., P, 3] and [..., 3]"
+            f"points {contacts.points.shape} and centre of mass {com.shape} do not belong together:"
+            " give [..., P, 3] and [..., 3]"
         )
-    if points.shape[-1] != 3 or points.shape[-2] < 1:
-        raise InputError(f"points of shape {points.shape}: give at least one point of x, y, z")
     if acceleration is not None and acceleration.shape != com.shape:
         raise InputError(
             f"acceleration {acceleration.shape} must have the shape of the centre of mass, "
             f"{com.shape}"
         )
-    arrays = [points, normals, com, *([] if acceleration is None else [acceleration])]
+    arrays = [com, *([] if acceleration is None else [acceleration])]
     if not all(np.isfinite(array).all() for array in arrays):
-        raise InputError("points, normals, centre of mass and acceleration must be finite numbers")
-    if np.abs(np.linalg.norm(normals, axis=-1) - 1.0).max(initial=0.0) > 1e-6:
-        raise InputError("contact normals must have length 1")
-    if not (np.isfinite(mass) and mass > 0.0 and np.isfinite(friction) and friction > 0.0):
-        raise InputError(f"mass {mass} kg and friction {friction} must be positive numbers")
-    return batch
+        raise InputError("the centre of mass and its acceleration must be finite numbers")
+    if not (np.isfinite(mass) and mass > 0.0):
+        raise InputError(f"mass {mass} kg must be a positive number")

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
+from jaxleas.dynamics.contact_points import ContactPoints
 from jaxleas.dynamics.equilibrium import GRAVITY, contact_wrenches
 from jaxleas.dynamics.friction import margin_of_generator
 from jaxleas.dynamics.vectors import cross
@@ -13,12 +14,10 @@ _SIDED = 1e-9  # a generator that turns back by less counts as turning forwards
 
 
 def decide_robustness(
-    points: Float[np.ndarray, "N P 3"],
-    normals: Float[np.ndarray, "N P 3"],
+    contacts: ContactPoints,
     com: Float[np.ndarray, "N 3"],
     *,
     mass: float,
-    friction: float,
     least: float,
 ) -> tuple[Bool[np.ndarray, " N"], Bool[np.ndarray, " N"]]:
     """Tell where the robustness of static equilibrium is certainly `least` or more, or less.
@@ -26,32 +25,30 @@ def decide_robustness(
     From below: any b with G b = m [-g; 0] proves a robustness of min(b) |(sum_j g_j) x g_1|; the
     shortest such b is tried, then some nearer to the bound by alternating projections. From above:
     an axis through two contact points about which no generator turns backwards; the robot tips
-    over it as gravity turns it backwards. Where neither holds, ask `equilibrium_robustness`.
+    over it as gravity turns it backwards. Where neither holds, ask `robustness_of`.
 
     Args:
-        points: of contact, in the world [m].
-        normals: at the points.
+        contacts: points of contact, with one batch axis.
         com: centre of mass [m].
         mass: of the robot [kg].
-        friction: mu [1].
         least: the bound [N].
 
     Returns:
         Where it is surely there, and where it is surely not.
     """
-    wrenches = contact_wrenches(points, normals, com, friction)
-    bound = least / margin_of_generator(friction)
+    wrenches = contact_wrenches(contacts, com)
+    bound = np.broadcast_to(least / margin_of_generator(contacts), len(com))
     weight = mass * GRAVITY
-    there = _balances(wrenches, weight, bound) if bound >= 0.0 else np.zeros(len(com), dtype=bool)
+    there = _balances(wrenches, weight, bound) if least >= 0.0 else np.zeros(len(com), dtype=bool)
     missing = np.zeros(len(com), dtype=bool)
     open_ = np.flatnonzero(~there)
     if len(open_):
-        arms = points[open_] - com[open_, None]
-        missing[open_] = _tips_over(wrenches[open_], arms, weight, bound)
+        arms = contacts.points[open_] - com[open_, None]
+        missing[open_] = _tips_over(wrenches[open_], arms, weight, bound[open_])
     return there, missing
 
 
-def _balances(wrenches: np.ndarray, weight: float, bound: float) -> Bool[np.ndarray, " N"]:
+def _balances(wrenches: np.ndarray, weight: float, bound: np.ndarray) -> Bool[np.ndarray, " N"]:
     wanted = np.array([0.0, 0.0, weight, 0.0, 0.0, 0.0])
     transposed = wrenches.transpose(0, 2, 1)
     gram = wrenches @ transposed
@@ -64,7 +61,7 @@ def _balances(wrenches: np.ndarray, weight: float, bound: float) -> Bool[np.ndar
     for _ in range(_ROUNDS):
         if (proved | ~regular).all():
             break
-        aim = np.maximum(forces, bound + _EXCESS)
+        aim = np.maximum(forces, bound[:, None] + _EXCESS)
         missing = wanted - (wrenches @ aim[:, :, None])[:, :, 0]
         forces = aim + (back @ missing[:, :, None])[:, :, 0]
         proved |= forces.min(axis=1) >= bound
@@ -72,7 +69,7 @@ def _balances(wrenches: np.ndarray, weight: float, bound: float) -> Bool[np.ndar
 
 
 def _tips_over(
-    wrenches: np.ndarray, arms: np.ndarray, weight: float, bound: float
+    wrenches: np.ndarray, arms: np.ndarray, weight: float, bound: np.ndarray
 ) -> Bool[np.ndarray, " N"]:
     """Tell where a tipping axis bounds b0 from above by less than `bound`.
 

@@ -1,11 +1,18 @@
 import gzip
+import itertools
 import json
 
 import numpy as np
 import pytest
 from scipy.optimize import linprog
+from scipy.spatial.transform import Rotation
 
-from jaxleas.dynamics import equilibrium_robustness, friction_generators
+from jaxleas.dynamics import (
+    ContactPoints,
+    equilibrium_robustness,
+    friction_generators,
+    robustness_of,
+)
 from jaxleas.dynamics.equilibrium import _solve, contact_wrenches
 from jaxleas.types import InputError
 
@@ -75,12 +82,12 @@ def test_every_reference_case_within_1e_6(reference):
 
 def test_the_reference_cases_need_no_general_solver(reference):
     for case in reference:
-        wrenches = contact_wrenches(
+        contacts = ContactPoints(
             np.array(case["contact_points"])[None],
             np.array(case["contact_normals"])[None],
-            np.array(case["com"])[None],
             case["mu"],
         )
+        wrenches = contact_wrenches(contacts, np.array(case["com"])[None])
         force = case["mass"] * (np.array([[0.0, 0.0, GRAVITY]]) + np.array(case["acc"]))
         assert _solve(wrenches, force)[1].all(), case["id"]
 
@@ -178,3 +185,61 @@ def test_bad_input_is_one_sentence(change, sentence):
     good = {"points": FEET, "normals": UP, "com": np.zeros(3), "mass": 1.0, "friction": 0.5}
     with pytest.raises(InputError, match=sentence):
         equilibrium_robustness(**{**good, **change})
+
+
+@pytest.mark.parametrize("count", [3, 4, 6, 9])
+def test_generators_turn_with_the_contact(count):
+    rng = np.random.default_rng(8)
+    turns = Rotation.random(20, random_state=8).as_matrix()
+    local = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
+    level = friction_generators(local[0], 0.5, local[1], count)[0]
+    for turn in turns:
+        made = friction_generators(local[0] @ turn.T, 0.5, local[1] @ turn.T, count)[0]
+        np.testing.assert_allclose(made, level @ turn.T, atol=1e-12)
+    mirrored = level * [1.0, -1.0, 1.0]  # left and right feet have mirrored cones
+    apart = np.linalg.norm(mirrored[:, None] - level, axis=-1).min(axis=1)
+    np.testing.assert_allclose(apart, 0.0, atol=1e-12)
+    several = friction_generators(np.tile(local[0], (3, 1)), rng.uniform(0.2, 0.9, 3), None, count)
+    assert several.shape == (3, count, 3)
+
+
+@pytest.mark.parametrize("count", [4, 6])
+def test_robustness_turns_with_the_robot(count):
+    points, normals, com = random_stances(20, seed=9)
+    ahead = np.broadcast_to([1.0, 0.0, 0.0], normals.shape)
+    turn = Rotation.from_euler("z", 0.7).as_matrix()
+    here = robustness_of(ContactPoints(points, normals, 0.5, ahead, count), com, mass=50.0)
+    turned = [each @ turn.T for each in (points, normals, ahead)]
+    contacts = ContactPoints(turned[0], turned[1], 0.5, turned[2], count)
+    there = robustness_of(contacts, com @ turn.T, mass=50.0)
+    np.testing.assert_allclose(there, here, rtol=1e-7, atol=1e-7)
+
+
+def test_more_generators_find_more_robustness():
+    points, normals, com = random_stances(40, seed=10)
+    found = [
+        robustness_of(ContactPoints(points, normals, 0.5, None, count), com, mass=50.0)
+        for count in (
+            4,
+            8,
+            16,
+            32,
+        )  # each cone holds generators of the one before, or lies around it
+    ]
+    for fewer, more in itertools.pairwise(found):
+        assert (more >= fewer - 1e-9).mean() > 0.9
+    assert (found[-1] > found[0] + 0.1).any()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"generators": 2}, "needs 3 generators or more, not 2"),
+        ({"friction": np.array([0.5, -0.5])}, "positive"),
+        ({"ahead": np.zeros((1, 3))}, "shape of the points"),
+        ({"normals": np.zeros((8, 2))}, "do not belong together"),
+    ],
+)
+def test_contacts_that_are_none_are_refused(change, sentence):
+    with pytest.raises(InputError, match=sentence):
+        ContactPoints(**{"points": FEET, "normals": UP, "friction": 0.5, **change})

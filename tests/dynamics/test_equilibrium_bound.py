@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from jaxleas.dynamics import equilibrium_robustness
+from jaxleas.dynamics import ContactPoints, equilibrium_robustness
 from jaxleas.dynamics.equilibrium_bound import decide_robustness
 from tests.dynamics.test_equilibrium import FEET, UP, random_stances
 
@@ -13,7 +13,8 @@ def test_never_contradicts_the_linear_program_and_often_decides(least, level):
     if level:
         points, normals = np.tile(FEET, (200, 1, 1)), np.tile(UP, (200, 1, 1))
     exact = equilibrium_robustness(points, normals, com, mass=90.0, friction=0.5)
-    there, missing = decide_robustness(points, normals, com, mass=90.0, friction=0.5, least=least)
+    contacts = ContactPoints(points, normals, 0.5)
+    there, missing = decide_robustness(contacts, com, mass=90.0, least=least)
     assert not (there & (exact < least - 1e-9)).any()
     assert not (missing & (exact >= least + 1e-9)).any()
     if level and least >= 0.0:

@@ -28,6 +28,8 @@ class SamplingSettings(PlannerSettings):
     """gap between a standing sole and its surface [m]"""
     least_robustness: float = 2.0
     """every posture's robustness of equilibrium is at least this [N]"""
+    friction_generators: Annotated[int, Field(ge=3, le=64)] = 6
+    """of each contact point's cone, turned with the foot: more refuse fewer tilted stones"""
     max_tries: PositiveInt = 2
     """failures in a row, each but the last mended by a reposition, after which to stop"""
     max_repositions: NonNegativeInt = 20

@@ -10,7 +10,8 @@ from jaxleas.contacts.sampling.database import LegDatabase, leg_database
 from jaxleas.contacts.sampling.ground import Ground, ground_of
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.dynamics.equilibrium import equilibrium_robustness
+from jaxleas.dynamics.contact_points import ContactPoints
+from jaxleas.dynamics.equilibrium import robustness_of
 from jaxleas.dynamics.equilibrium_bound import decide_robustness
 from jaxleas.robots import Robot
 from jaxleas.robots.legs import LegModel, legs_of
@@ -39,29 +40,28 @@ class World:
         self, stances: Stances, com: Float[np.ndarray, "N 3"]
     ) -> Float[np.ndarray, " N"]:
         """Return the robustness of equilibrium of each posture [N]."""
-        points, normals = _contact_points(stances)
-        return equilibrium_robustness(
-            points, normals, com, mass=self.legs.mass, friction=self.robot.friction
-        )
+        return robustness_of(self._contact_points(stances), com, mass=self.legs.mass)
 
     def is_robust(self, stances: Stances, com: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"]:
         """Tell which postures have the robustness that the settings ask for."""
-        points, normals = _contact_points(stances)
         least = self.settings.least_robustness
-        mass, friction = self.legs.mass, self.robot.friction
         robust, missing = decide_robustness(
-            points, normals, com, mass=mass, friction=friction, least=least
+            self._contact_points(stances), com, mass=self.legs.mass, least=least
         )
         open_ = np.flatnonzero(~(robust | missing))
         if len(open_):
             robust[open_] = self.robustness(stances[open_], com[open_]) >= least
         return robust
 
-
-def _contact_points(stances: Stances) -> tuple[np.ndarray, np.ndarray]:
-    count = len(stances)
-    normals = np.repeat(stances.rotation[..., 2], 4, axis=1)
-    return stances.corners.reshape(count, -1, 3), normals
+    def _contact_points(self, stances: Stances) -> ContactPoints:
+        corners = stances.corners.shape[2]
+        return ContactPoints(
+            stances.corners.reshape(len(stances), -1, 3),
+            np.repeat(stances.rotation[..., 2], corners, axis=1),
+            self.robot.effectors[self.robot.feet[0]].friction,
+            np.repeat(stances.rotation[..., 0], corners, axis=1),
+            self.settings.friction_generators,
+        )
 
 
 def make_world(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> World:

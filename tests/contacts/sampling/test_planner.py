@@ -5,7 +5,7 @@ import pytest
 
 from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many, plan_over
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
-from jaxleas.dynamics import equilibrium_robustness
+from jaxleas.dynamics import ContactPoints, robustness_of
 from jaxleas.robots import load_talos
 from jaxleas.robots.legs import leg_angles, load_talos_legs
 from jaxleas.terrain.config import GeneratorConfig
@@ -70,13 +70,15 @@ def test_robustness_is_that_of_the_linear_program(climb):
                     if abs(reach[axis]) > 1e-12:
                         share = min(share, room / reach[axis])
                 points.append(sole + share * reach)
-        expected = equilibrium_robustness(
+        axes = np.repeat(plan.rotations[which], 4, axis=0)
+        contacts = ContactPoints(
             np.array(points),
-            np.repeat(plan.rotations[which][:, :, 2], 4, axis=0),
-            plan.com[which],
-            mass=load_talos_legs().mass,
+            axes[:, :, 2],
             friction=0.5,
+            ahead=axes[:, :, 0],
+            generators=SamplingSettings().friction_generators,
         )
+        expected = robustness_of(contacts, plan.com[which], mass=load_talos_legs().mass)
         np.testing.assert_allclose(plan.robustness[which], expected, rtol=1e-6)
 
 
