@@ -1,6 +1,7 @@
 """The certificate of a stance: every contact lies on its surface, is in reach, and all balance.
 
-Shares no code with planners. Surfaces may have any orientation: floors, walls, ceilings.
+Shares no code with the planners: friction cones are exact. Surfaces may have any orientation:
+floors, walls, ceilings.
 """
 
 import math
@@ -13,14 +14,15 @@ from scipy.optimize import linprog
 from scipy.sparse import csr_array
 
 from jaxleas.contacts.certificate import TOLERANCE
+from jaxleas.dynamics import ContactPoints, exact_robustness
+from jaxleas.dynamics.equilibrium import GRAVITY
 from jaxleas.robots import Robot
 from jaxleas.types import Contact, InputError, RootPose, Stance
 
-GRAVITY = 9.81  # [m/s^2]
-SIDES = 256
-"""Generators of a friction cone, from inside: they miss 0.01 % of the friction."""
-BALANCED = 1e-6
-"""A stance whose forces miss the robot's weight by more than this share of it falls."""
+_SIDES = 256
+"""Generators of a friction cone, from inside, where forces are limited: 0.01 % less friction."""
+_WITHIN = 1e-6
+"""Limited forces that miss the robot's weight by more than this share of it carry no robot."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +32,14 @@ class StanceCertificate:
     Attributes:
         metres: by how much the worst geometric constraint is violated [m].
         constraint: which one, in a few words.
-        imbalance: force [N] and torque [N m] that no contact forces can balance, the larger one.
-        weight: weight of the robot [N].
+        robustness: robustness of equilibrium with exact friction cones [N]; below 0 it falls.
+        overload: share of the weight that limited forces leave; 0 where no force is limited.
     """
 
     metres: float
     constraint: str
-    imbalance: float
-    weight: float
+    robustness: float
+    overload: float
 
     @property
     def certified(self) -> bool:
@@ -49,8 +51,13 @@ class StanceCertificate:
         """What is wrong, as the end of a sentence; empty if nothing is."""
         if not self.metres <= TOLERANCE:
             return f"violates {self.constraint} by {self.metres:.3g} m"
-        if not self.imbalance <= BALANCED * self.weight:
-            return f"is out of equilibrium by {self.imbalance:.3g} N"
+        if not self.robustness >= 0.0:
+            return f"is out of equilibrium: its robustness is {self.robustness:.3g} N"
+        if not self.overload <= _WITHIN:
+            return (
+                "is carried by no forces within the effectors' limits, which leave"
+                f" {100.0 * self.overload:.2g} % of the weight"
+            )
         return ""
 
 
@@ -82,9 +89,9 @@ def certify_stance(
         found += _on_surface(robot, contact, np.asarray(surfaces[contact.surface], np.float64))
         found.append(_reach(robot, root, contact))
     metres, constraint = max(found)
-    return StanceCertificate(
-        metres, constraint, _imbalance(robot, stance, com), robot.mass * GRAVITY
-    )
+    contacts = _contact_points(robot, stance)
+    robustness = exact_robustness(contacts, com, mass=robot.mass)
+    return StanceCertificate(metres, constraint, robustness, _overload(robot, stance, com))
 
 
 def _on_surface(robot: Robot, contact: Contact, polygon: np.ndarray) -> list[tuple[float, str]]:
@@ -120,46 +127,57 @@ def _reach(robot: Robot, root: RootPose, contact: Contact) -> tuple[float, str]:
     return float(excess.max()), f"reach of {contact.effector}"
 
 
-def _imbalance(robot: Robot, stance: Stance, com: np.ndarray) -> float:
-    """Return the least s with |sum f + m g| <= s and |sum (p - c) x f| <= s, f in the cones [N].
-
-    The forces are sums of generators of the cones, from inside, so that what balances here does
-    balance; a contact's normal force is at most its effector's limit.
-    """
-    wrenches, caps, limits = [], [], []
+def _contact_points(robot: Robot, stance: Stance) -> ContactPoints:
+    points, normals, friction = [], [], []
     for name, contact in stance.contacts.items():
         effector = robot.effector(name)
-        points = contact.pose.transform(effector.corners)
-        cone = _cone(contact.pose.rotation, effector.friction)
-        for point in points:
-            wrenches.append(np.concatenate([cone, np.cross(point - com, cone)], axis=1))
-        caps.append((len(points) * SIDES, effector.force_limit))
-    columns = np.concatenate(wrenches).T  # [6, all generators]
-    count = columns.shape[1]
+        corners = contact.pose.transform(effector.corners)
+        points.append(corners)
+        normals.append(np.tile(contact.normal, (len(corners), 1)))
+        friction.append(np.full(len(corners), effector.friction))
+    return ContactPoints(np.concatenate(points), np.concatenate(normals), np.concatenate(friction))
+
+
+def _overload(robot: Robot, stance: Stance, com: np.ndarray) -> float:
+    """Return the least s with |sum f + g| <= s and |sum (p - c) x f| <= s, in units of the weight.
+
+    The forces f are in the cones, and the normal force of an effector is at most its limit; torques
+    are those of a metre's arm. Nothing is asked where no effector has a limit.
+    """
+    effectors = [robot.effector(name) for name in stance.contacts]
+    if all(effector.force_limit is None for effector in effectors):
+        return 0.0
     weight = robot.mass * GRAVITY
-    target = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # in units of the weight
+    wrenches, owners = [], []
+    for number, (contact, effector) in enumerate(
+        zip(stance.contacts.values(), effectors, strict=True)
+    ):
+        cone = _cone(contact.pose.rotation, effector.friction)
+        for point in contact.pose.transform(effector.corners):
+            wrenches.append(np.concatenate([cone, np.cross(point - com, cone)], axis=1))
+            owners += [number] * len(cone)
+    columns = np.concatenate(wrenches).T  # [6, all generators]
+    target = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
     slack = -np.ones((6, 1))
-    rows = [np.hstack([columns, slack]), np.hstack([-columns, slack])]
-    bounds = [target, -target]
-    begin = 0
-    for size, limit in caps:
-        if limit is not None:
-            row = np.zeros((1, count + 1))
-            row[0, begin : begin + size] = 1.0  # a generator's normal part is 1
-            rows.append(row)
-            limits.append(limit / weight)
-        begin += size
+    limits = np.array([effector.force_limit or np.inf for effector in effectors]) / weight
+    limited = np.flatnonzero(np.isfinite(limits))
+    normal_forces = (np.array(owners) == limited[:, None]).astype(float)  # a generator's is 1
+    rows = [
+        np.hstack([columns, slack]),
+        np.hstack([-columns, slack]),
+        np.hstack([normal_forces, np.zeros((len(limited), 1))]),
+    ]
     answer = linprog(
-        np.append(np.zeros(count), 1.0),
+        np.append(np.zeros(columns.shape[1]), 1.0),
         A_ub=csr_array(np.concatenate(rows)),
-        b_ub=np.concatenate([*bounds, limits]),
+        b_ub=np.concatenate([target, -target, limits[limited]]),
         bounds=(0.0, None),
     )
-    return float(answer.x[-1]) * weight if answer.status == 0 else math.inf
+    return float(answer.x[-1]) if answer.status == 0 else math.inf
 
 
 def _cone(rotation: np.ndarray, friction: float) -> np.ndarray:
     """Return the generators n + mu (cos a t1 + sin a t2), which turn with the contact."""
-    angles = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    angles = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     return rotation[:, 2] + friction * circle @ rotation[:, :2].T

@@ -302,7 +302,7 @@ def test_friction_and_force_limits_count() -> None:
     assert hand.effector is not None
     weak = replace(hand, effector=replace(hand.effector, force_limit=5.0))
     found = certify_stance(replace(robot, limbs=(*feet, weak)), ROOT, stance, surfaces, LEANING)
-    assert "out of equilibrium" in found.complaint
+    assert "carried by no forces within the effectors' limits" in found.complaint
     strong = replace(hand, effector=replace(hand.effector, force_limit=500.0))
     assert certify_stance(
         replace(robot, limbs=(*feet, strong)), ROOT, stance, surfaces, LEANING
@@ -312,7 +312,7 @@ def test_friction_and_force_limits_count() -> None:
 def test_the_exact_cone_decides_on_a_slope() -> None:
     """A robot on a slope stands as long as tan(slope) <= mu, whichever way it faces."""
     robot = leaner()
-    for mu_share, expected in ((0.99, True), (1.01, False)):
+    for mu_share, expected in ((0.999, True), (1.001, False)):
         slope = np.arctan(0.7 * mu_share)
         normal = np.array([-np.sin(slope), 0.0, np.cos(slope)])
         up = np.array([np.cos(slope), 0.0, np.sin(slope)])
