@@ -15,7 +15,6 @@ def contact_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.problem import FootPose
     from jaxleas.contacts.problem_file import read_problem, write_problem
     from jaxleas.robots.files import read_robot
-    from jaxleas.robots.legs import read_legs
     from jaxleas.viewer.clips import read_plan_clip
 
     surfaces = {"floor": [[0, -1, 0], [4, -1, 0], [4, 1, 0], [0, 1, 0]]}
@@ -60,5 +59,5 @@ def contact_kinds(folder: Path) -> list[Kind]:
         kind_of("contact problem", folder / "problem.json", read_problem, m.mutate_json),
         kind_of("contact plan", folder / "plan.json", plan_read, m.mutate_json, asked),
         kind_of("robot", data / "talos.json", read_robot, m.mutate_json),
-        kind_of("legs", data / "talos_legs.json", read_legs, m.mutate_json),
+        kind_of("robot with numeric legs", data / "g1.json", read_robot, m.mutate_json),
     ]

@@ -4,28 +4,18 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.contacts.certificate import certify
+from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
 from jaxleas.contacts.from_guide import Candidates, problem_from_guide
-from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
-from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
+from jaxleas.contacts.outcome import draw, write_outcome
+from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide, Planner
 from jaxleas.contacts.planner_settings import plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
-from jaxleas.robots import load_robot
 from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types import GuidePath
-from jaxleas.types.errors import InputError, JaxleasError
-
-FOR_PICTURE = 10.0
-"""Most time spent on drawing how far a failed plan could go [s]."""
-
-
-class NotCertifiedError(JaxleasError):
-    """A plan that violates its problem: an answer, not a bad input."""
-
-    exit_code = 1
+from jaxleas.types.errors import InputError
 
 
 def plan(
@@ -59,13 +49,13 @@ def plan(
     settings = plan_settings_from(found, cost=_wanted(cost), max_combinations=max_combinations)
     asked = read_problem(problem)
     if found.needs == "guide":
-        followed = _along_roots(asked)
+        followed = along_roots(asked)
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return _tell(answer, followed, out, picture)
+        return write_outcome(answer, followed, out, picture)
     if without_guide:
         asked = asked.without_guide()
     answer = found.plan(asked, settings, time_limit=time_limit)
-    return _tell(answer, asked, out, picture)
+    return write_outcome(answer, asked, out, picture)
 
 
 def check(
@@ -93,8 +83,8 @@ def check(
     if picture is not None:
         _require_writable_names(Path("plan.json"), picture)
     if read.postures is not None:
-        asked = _followed(plan, problem, guide, scene, query, robot)
-        _check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
+        asked = followed_by(plan, problem, guide, scene, query, robot)
+        check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
         return
     if problem is None:
         raise InputError(
@@ -104,57 +94,11 @@ def check(
     asked = read_problem(problem)
     worst = certify(asked, read)
     if picture is not None:
-        _draw(picture, asked, read)
+        draw(picture, asked, read)
     verdict = f"{worst.constraint}, phase {worst.phase}: {worst.metres:.3g} m"
     if not worst.certified:
         raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
     print(f"{plan} is certified: {len(asked)} phases, nothing violated (tightest: {verdict})")
-
-
-def _followed(
-    plan: Path,
-    problem: Path | None,
-    guide: Path | None,
-    scene: Path | None,
-    query: int,
-    robot: str | None,
-) -> AskedGuide:
-    """Return the guide path that a plan follows, the scene and the robot."""
-    from jaxleas.contacts.guide_file import read_guide_path
-
-    if problem is not None and guide is None and scene is None:
-        return _along_roots(read_problem(problem), robot)
-    if problem is None and guide is not None and scene is not None:
-        followed = read_guide_path(guide, query)
-        return AskedGuide(robot or DEFAULT_ROBOT, followed, load_scene(scene))
-    raise InputError(
-        f"{plan} holds postures along a guide path: it is checked against its guide and scene,"
-        " with --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"
-    )
-
-
-def _along_roots(problem: ContactProblem, robot: str | None = None) -> AskedGuide:
-    """Return the guide path through a problem's roots, over its surfaces."""
-    guide, scene = guide_from_problem(problem), scene_of_problem(problem)
-    return AskedGuide(robot or problem.robot, guide, scene)
-
-
-def _check_postures(
-    plan: Path, read: ContactPlan, asked: AskedGuide, what: str, picture: Path | None
-) -> None:
-    from jaxleas.contacts.posture_certificate import certify_postures
-
-    certificate = certify_postures(read, asked.guide, asked.scene, load_robot(asked.robot))
-    if picture is not None:
-        _draw_walk(picture, read, asked)
-    if not certificate.certified:
-        raise NotCertifiedError(f"{plan} is no plan for {what}: {certificate.complaint}")
-    worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"
-    print(
-        f"{plan} is certified: {len(read.postures or ())} postures, nothing violated (tightest:"
-        f" {worst.constraint}, posture {worst.phase}: {worst.metres:.3g} m), least robustness"
-        f" {certificate.least_robustness:.3g} N{end}"
-    )
 
 
 def contacts(
@@ -209,13 +153,13 @@ def contacts(
         settings = plan_settings_from(found, keep_every=every, **given)
         followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return _tell(answer, followed, out, picture)
+        return write_outcome(answer, followed, out, picture)
     settings = plan_settings_from(found, **given)
     followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
     made = _problem(found, followed, every, options)
     if problem is not None:
         write_problem(problem, made)
-    return _tell(found.plan(made, settings, time_limit=time_limit), made, out, picture)
+    return write_outcome(found.plan(made, settings, time_limit=time_limit), made, out, picture)
 
 
 def _problem(
@@ -256,75 +200,3 @@ def _require_own_contacts(planner: Planner, **given: object) -> None:
             f"the {planner.name} planner chooses its own contacts: {', '.join(wrong)} is for"
             f" {' and '.join(others)}"
         )
-
-
-def describe_walk(guide: GuidePath, found: ContactPlan) -> str:
-    """Return a sampling plan's outcome in one line."""
-    postures = found.postures or ()
-    steps = f"{len(found.surfaces)} steps in {1000.0 * found.seconds:.0f} ms"
-    if found.robustness:
-        steps += f", least robustness {min(found.robustness):.3g} N"
-    if found.feasible:
-        return f"{found.planner}: feasible, {steps}, certified to {found.max_violation:.1g} m"
-    reached = postures[-1].configuration if postures else -1
-    where = f"configuration {reached} of {len(guide) - 1} reached"
-    return f"{found.planner}: {found.status} ({where}), {steps}: {found.reason}"
-
-
-def _tell(
-    answer: ContactPlan, asked: ContactProblem | AskedGuide, out: Path, picture: Path | None
-) -> ContactPlan:
-    """Write a plan, draw it, and print its outcome."""
-    write_plan(out, answer)
-    if isinstance(asked, ContactProblem):
-        if picture is not None:
-            _draw(picture, asked, answer)
-        words = describe(asked, answer)
-    else:
-        if picture is not None:
-            _draw_walk(picture, answer, asked)
-        words = describe_walk(asked.guide, answer)
-    print(f"{words}\nwritten to {out}")
-    return answer
-
-
-def describe(problem: ContactProblem, found: ContactPlan) -> str:
-    """Return a plan's outcome in one line."""
-    tried = ""
-    if found.undecided is not None:
-        tried = f", {found.undecided} undecided, {found.combinations} combinations"
-    timing = f"{len(problem)} phases in {1000.0 * found.seconds:.0f} ms{tried}"
-    if found.feasible:
-        return f"{found.planner}: feasible, {timing}, certified to {found.max_violation:.1g} m"
-    reach = ""
-    if found.last_feasible_phase is not None:
-        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} phases can be made)"
-    return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
-
-
-def _draw(
-    picture: Path, problem: ContactProblem, found: ContactPlan, guide: GuidePath | None = None
-) -> None:
-    from jaxleas.contacts.pictures import draw_plan
-
-    draw_plan(picture, problem, found, guide, _as_far_as_it_goes(problem, found))
-
-
-def _draw_walk(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
-    from jaxleas.contacts.plan_sampling import walked_problem
-
-    steps = walked_problem(found, asked.guide, asked.scene, load_robot(asked.robot))
-    _draw(picture, steps, found, asked.guide)
-
-
-def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:
-    """Plan the phases before the first that cannot be made, for a picture."""
-    count = 0 if found.last_feasible_phase is None else found.last_feasible_phase + 1
-    if found.feasible or found.planner not in PLANNERS or not 0 < count < len(problem):
-        return None
-    planner = find_planner(found.planner)
-    if planner.needs != "problem":
-        return None
-    settings, prefix = planner.plan_settings(), problem.prefix(count)
-    made = planner.plan(prefix, settings, time_limit=FOR_PICTURE, diagnose=False)
-    return made if made.feasible else None

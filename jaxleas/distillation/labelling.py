@@ -15,7 +15,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.files import write_json
 from jaxleas.guide.files import Reason, write_guide_paths
-from jaxleas.labels import PlannerSettings, Workers, label_shards, plan_shards
+from jaxleas.labels import Oracle, PlannerSettings, Workers, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.training.policy import SteeringPolicy
@@ -80,10 +80,8 @@ def label_round(
         for shard in plan_shards(
             [guides],
             guides.with_name(guides.name.replace("guides", "scene")).with_suffix(".json"),
-            planner,
-            settings,
+            Oracle(planner, settings, ground.env.config.robot),
             folder.labels / "verdicts",
-            robot=ground.env.config.robot,
         )
     ]
     total, done = sum(map(len, shards)), 0

@@ -6,6 +6,7 @@ from jaxleas.contacts.programs.settings import MipSettings, Sl1mSettings
 from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.labels.judging import Judge
 from jaxleas.labels.label import judge_shard, label_shards, plan_shards
+from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import ask, judge, judge_over
 from jaxleas.labels.shards import Shard, read_verdicts
 from jaxleas.types import Verdict
@@ -16,6 +17,7 @@ __all__ = [
     "Here",
     "Judge",
     "MipSettings",
+    "Oracle",
     "Outcome",
     "OwnPlanner",
     "PlannerSettings",

@@ -65,6 +65,7 @@ def label(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     from jaxleas.labels.label import label_shards, plan_shards
+    from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.settings import settings_of
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.workers.processes import require_count
@@ -91,9 +92,8 @@ def label(
     begun = perf_counter()
     # Absolute: a worker elsewhere has another working folder.
     files = [Path(each).absolute() for each in guides]
-    shards = plan_shards(
-        files, Path(scene).absolute(), planner, settings, Path(out).absolute(), robot=robot
-    )
+    oracle = Oracle(planner, settings, robot)
+    shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())

@@ -3,11 +3,8 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import find_planner
-from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.guide.files import read_guide_paths
+from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import judge
 from jaxleas.labels.shards import Asked, Shard, write_shard
 from jaxleas.terrain.mesh_scene import load_scene
@@ -16,31 +13,22 @@ from jaxleas.workers.processes import Workers
 
 
 def plan_shards(
-    guides: Sequence[Path],
-    scene: Path,
-    planner: str,
-    settings: PlannerSettings | None,
-    out: Path,
-    a_shard: int | None = None,
-    robot: str = DEFAULT_ROBOT,
+    guides: Sequence[Path], scene: Path, oracle: Oracle, out: Path, a_shard: int | None = None
 ) -> list[Shard]:
     """Return the shards of guide path files: `out/<file's stem>/verdicts_<first>.json`.
 
     Args:
         guides: guide path files.
         scene: scene file that they walk on.
-        planner: name of a planner, or MODULE:CLASS of your own, which this call imports.
-        settings: settings of the planner; its defaults if None.
+        oracle: planner to ask.
         out: folder of the verdict files.
         a_shard: guide paths per shard; as many as suit the planner if None.
-        robot: name of the robot.
 
     Raises:
         InputError: a file cannot be used, two have the same name, or the settings do not fit.
     """
-    found = find_planner(planner, [planner])
-    chosen = require_settings(found, settings)
-    size = a_shard or found.grain.shard
+    planner, settings = oracle.find()
+    size = a_shard or planner.grain.shard
     load_scene(scene)
     stems = [path.stem for path in guides]
     twice = sorted({stem for stem in stems if stems.count(stem) > 1})
@@ -49,7 +37,7 @@ def plan_shards(
     shards = []
     for path in guides:
         count = len(read_guide_paths(path).paths)
-        asked = Asked(path, scene, planner, chosen, robot)
+        asked = Asked(path, scene, oracle.planner, settings, oracle.robot)
         provenance = asked.provenance()
         for first in range(0, count, size):
             name = Path(out) / path.stem / f"verdicts_{first:06d}.json"

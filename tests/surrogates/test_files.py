@@ -13,7 +13,7 @@ from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import read_json, read_npz, write_json, write_npz
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import Here, label_shards, plan_shards
+from jaxleas.labels import Here, Oracle, label_shards, plan_shards
 from jaxleas.robots import robot_digest
 from jaxleas.surrogates import (
     Surrogate,
@@ -101,8 +101,7 @@ def labelled(tmp_path_factory):
         shards = plan_shards(
             [folder / f"guides_{number}.npz"],
             folder / f"scene_{number}.json",
-            "sampling",
-            settings_from("sampling", samples=500),
+            Oracle("sampling", settings_from("sampling", samples=500)),
             folder / "verdicts",
         )
         label_shards(shards, Here(), lambda count: None)
