@@ -40,9 +40,8 @@ def main(arguments: Sequence[str]) -> None:
     from benchmarks.rival import default_python, require_rival
     from benchmarks.suite import choose, measure
     from benchmarks.table import show
-    from jaxleas.configuration.loading import load_config
-    from jaxleas.training.config import RunConfig
     from jaxleas.training.cores import share_cores
+    from jaxleas.training.run_config import load_run_config
     from jaxleas.types.errors import InputError, JaxleasError
 
     class SlowerError(JaxleasError):
@@ -57,7 +56,7 @@ def main(arguments: Sequence[str]) -> None:
         return
     config = given.config.resolve() if given.config else CONFIG
     # A mistake in it is found before anything is measured.
-    share_cores(load_config(RunConfig, config).ppo)
+    share_cores(load_run_config(config).ppo)
     _require_device(given.device)
     if given.rivals:
         require_rival(given.rivals)

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ACTION_SIZE
 from jaxleas.envs.steering.state import GOALS
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import AnyRun
 
 FLOAT = 4  # bytes
 LOGITS = 2 * ACTION_SIZE  # a mean and a deviation for each component of an action
@@ -66,7 +66,7 @@ class StepWork:
         return self.walk_flops + self.learn_flops
 
 
-def step_work(config: RunConfig, env: SteeringEnv) -> StepWork:
+def step_work(config: AnyRun, env: SteeringEnv) -> StepWork:
     """Return the least work of a step: for this network, observation and number of epochs."""
     size, hidden = env.layout.size, config.network.hidden
     actor, critic = layers(size, hidden, LOGITS), layers(size, hidden, 1)

@@ -8,10 +8,10 @@ from typing import Any
 from benchmarks.arithmetic import env_limit, ppo_limit, step_work
 from benchmarks.rival import Rival
 from benchmarks.roofs import Roofs
-from jaxleas.configuration.loading import load_config
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.task import Steering
 from jaxleas.envs.steering.world import World
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import AnyRun, load_run_config
 from jaxleas.training.worlds import training_world
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -34,9 +34,9 @@ class Context:
     config_path: Path = CONFIG
 
     @cached_property
-    def config(self) -> RunConfig:
+    def config(self) -> AnyRun:
         """The configuration that is measured."""
-        return load_config(RunConfig, self.config_path)
+        return load_run_config(self.config_path)
 
     @cached_property
     def env(self) -> SteeringEnv:
@@ -46,7 +46,7 @@ class Context:
     @cached_property
     def world(self) -> World:
         """The terrain as configured."""
-        return training_world(self.config)
+        return training_world(self.config, Steering(self.config.env, self.config.terrain))
 
     @cached_property
     def roofs(self) -> Roofs:
@@ -63,15 +63,15 @@ class Context:
         rates = self.roofs.rates(self.config, env, robots, matrix=False)
         return env_limit(step_work(self.config, env), rates)
 
-    def ppo_limit(self, config: RunConfig, env: SteeringEnv) -> float:
+    def ppo_limit(self, config: AnyRun, env: SteeringEnv) -> float:
         """Return the bound of training end to end [steps/s]."""
         rates = self.roofs.rates(config, env, config.ppo.environments, matrix=True)
         return ppo_limit(step_work(config, env), rates)
 
 
-def changed(config: RunConfig, **sections: dict[str, Any]) -> RunConfig:
+def changed(config: AnyRun, **sections: dict[str, Any]) -> AnyRun:
     """Return a configuration with some fields of some sections changed, checked again."""
     document = config.model_dump()
     for section, fields in sections.items():
         document[section] |= fields
-    return RunConfig.model_validate(document)
+    return type(config).model_validate(document)

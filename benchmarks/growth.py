@@ -17,10 +17,10 @@ from benchmarks.workloads.training import ARENAS, AS_SHIPPED, SIZES, WIDTHS, mem
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
 from jaxleas.files import atomic_path
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import run_config_of
 from jaxleas.types import InputError
 
-SHIPPED = RunConfig()
+SHIPPED = run_config_of("steering")()
 ENV_SHIPPED = f"env_{THESIS144.name}_{ARENA_ROBOTS}"
 ENVIRONMENT_COLOUR, TRAINING_COLOUR = "#1f5fd0", "#e07020"
 

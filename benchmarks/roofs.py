@@ -13,8 +13,8 @@ from benchmarks.spread import all_devices
 from benchmarks.timing import seconds_a_call
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.terrain.atlas import Atlas
-from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices
+from jaxleas.training.run_config import AnyRun
 
 LARGE = 2048  # side of the large matrices
 PASSES = 8  # over memory within one call, so that starting it costs nothing
@@ -32,7 +32,7 @@ class Roofs:
         self._atlas = atlas
         self._known: dict[tuple[object, ...], float] = {}
 
-    def rates(self, config: RunConfig, env: SteeringEnv, robots: int, matrix: bool) -> Rates:
+    def rates(self, config: AnyRun, env: SteeringEnv, robots: int, matrix: bool) -> Rates:
         """Return what the machine does at these sizes.
 
         Args:
@@ -56,7 +56,7 @@ class Roofs:
         """Return the rate of large matrix products in such numbers [FLOP/s]."""
         return self._once(("large", numbers), lambda: _large_products(numbers))
 
-    def network_products(self, config: RunConfig, env: SteeringEnv) -> float:
+    def network_products(self, config: AnyRun, env: SteeringEnv) -> float:
         """Return the rate of the products of one minibatch's gradient, and of nothing else."""
         samples = config.ppo.batch // config.ppo.minibatches
         sizes = (samples, env.layout.size, *config.network.hidden)

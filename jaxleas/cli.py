@@ -26,7 +26,7 @@ COMMANDS = {
     ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
-    "evaluate": ("jaxleas.evaluation.commands", "evaluate", "judge a policy on terrains unseen"),
+    "evaluate": ("jaxleas.reports.commands", "evaluate", "judge a policy on terrains unseen"),
     "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
     "navigate": (
         "jaxleas.guide.navigation_command",

@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from jaxleas.runs.swallowed import interrupts_kept
+
 FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -22,8 +24,9 @@ def run_guarded(main: Callable[[], None]) -> int:
 
     A `JaxleasError`, a wrong command line, a full disk and files that are not ours to touch become
     one sentence on standard error and exit code 2 (or the error's own `exit_code`); Ctrl-C is quiet
-    and gives 130; anything else is a bug of ours and keeps its traceback. With `--traceback` on the
-    command line, or JAXLEAS_TRACEBACK set, every error keeps it.
+    and gives 130, also where Python throws it away at first; anything else is a bug of ours and
+    keeps its traceback. With `--traceback` on the command line, or JAXLEAS_TRACEBACK set, every
+    error keeps it.
 
     Args:
         main: what to run; reads `sys.argv` only when called, since `--traceback` is taken out.
@@ -33,7 +36,8 @@ def run_guarded(main: Callable[[], None]) -> int:
         sys.argv.remove("--traceback")
         wants_traceback = True
     try:
-        main()
+        with interrupts_kept():
+            main()
         sys.stdout.flush()
     except KeyboardInterrupt:
         return INTERRUPTED

@@ -44,7 +44,7 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
             continue
         if not required:
             options["default"] = parameter.default
-            if parameter.default not in (None, False):
+            if parameter.default not in (None, False, ()):
                 options["help"] += f" [{parameter.default}]".replace("%", "%%")
         flag = "--" + name.strip("_").replace("_", "-")
         parser.add_argument(flag, dest=name, required=required, **options)

@@ -23,7 +23,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.files import write_json
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy
-from jaxleas.guide.rollout import paths, roll_out
+from jaxleas.guide.rollout import Trips, paths, roll_out
 from jaxleas.labels import Judge
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.config import GeneratorConfig
@@ -95,9 +95,8 @@ def _walk(
         yaw=jnp.asarray(rng.uniform(-np.pi, np.pi, len(index)), jnp.float32),
     )
     waypoints = jnp.asarray(goals, jnp.float32)[:, None]
-    rollout = roll_out(
-        env, make_atlas(maps), jnp.asarray(index), leas(env, walker), motion, waypoints, STEPS
-    )
+    trips = Trips(make_atlas(maps), jnp.asarray(index), motion, waypoints)
+    rollout = roll_out(env, leas(env, walker), trips, STEPS)
     return Walks(scenes, paths(rollout, env.config.limits.time_step), index.tolist())
 
 

@@ -19,16 +19,17 @@ from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import ask, walker
 from jaxleas.evaluation.result_file import now
-from jaxleas.evaluation.risk_dial import Guides, as_json, draw_dial, foresee, join, sweep
+from jaxleas.evaluation.risk_dial import Guides, as_json, foresee, join, sweep
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.evaluation.table import cell_title
+from jaxleas.evaluation.titles import cell_title
 from jaxleas.files import write_bytes, write_json
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy
 from jaxleas.guide.rb_kino import rb_kino
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.labels import Judge
+from jaxleas.reports.risk_dial import draw_dial
 from jaxleas.surrogates import (
     FitSettings,
     Surrogate,

@@ -14,12 +14,16 @@ ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "xla", "files", "configuration", "workers", "runs"),
     *("geometry", "robots", "terrain", "conditions", "envs", "training"),
-    *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation"),
+    *("guide", "dynamics", "contacts", "labels", "surrogates", "gait", "evaluation", "reports"),
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "cli"),
 )
 # What keeps the loop of data open: these may not, although the order would let them.
 FORBIDDEN = {"contacts": {"envs", "training", "guide"}, "surrogates": {"labels"}}
+# Rooms whose functions take few parameters; a command has one for each of its options.
+SHORT_SIGNATURES = ("types", "guide", "surrogates", "evaluation", "distillation", "viewer")
+MOST_PARAMETERS = 6
+COMMAND_FILES = ("commands", "command")
 FILES = sorted(path for path in ROOT.rglob("*.py") if path != ROOT / "__init__.py")
 
 
@@ -53,6 +57,26 @@ def test_a_room_imports_only_from_rooms_above_it(path: Path) -> None:
     assert room_of(path) in ORDER, f"{path} is in no room of the house"
     package = ["jaxleas", *path.relative_to(ROOT).parts[:-1]]
     assert not violations(room_of(path), path.read_text(encoding="utf-8"), package)
+
+
+def long_signatures(path: Path) -> list[str]:
+    """Return the functions of a file that take too many parameters, commands left out."""
+    found = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            count = len([each for each in given if each.arg not in ("self", "cls")])
+            is_command = path.stem.rpartition("_")[2] in COMMAND_FILES and node.name[0] != "_"
+            if count > MOST_PARAMETERS and not is_command:
+                found.append(f"{node.name} takes {count}")
+    return found
+
+
+@pytest.mark.parametrize("room", SHORT_SIGNATURES)
+def test_many_parameters_are_values_with_names(room: str) -> None:
+    files = [path for path in FILES if room_of(path) == room]
+    assert files
+    assert {str(path): long_signatures(path) for path in files if long_signatures(path)} == {}
 
 
 @pytest.mark.parametrize(

@@ -16,17 +16,18 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.configuration.fields import fields_of
-from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
 from jaxleas.runs.folder import RunFolder
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain import write_height_map
-from jaxleas.training.config import RunConfig
 from jaxleas.training.policy import write_policy
+from jaxleas.training.run_config import load_run_config, run_config_of
 from tests.guide.walkers import flat_map, random_policy, standing
 from tests.training.runs import tiny
 
 ROOT = Path(__file__).resolve().parents[1]
+RunConfig = run_config_of("steering")
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)(?: [^\n]*)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUNS = re.compile(r"^<!-- (runs.*?) -->\n```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -133,7 +134,7 @@ def parse_train(arguments: list[str], monkeypatch) -> None:
     assert (given.config is None) != (given.resume is None)
     if given.config is not None:
         overrides = [each for each in overrides if each != "--help"]
-        load_config(RunConfig, ROOT / given.config, overrides)
+        load_run_config(ROOT / given.config, overrides)
     else:
         assert not overrides
 

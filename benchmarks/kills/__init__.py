@@ -1,1 +1,1 @@
-"""A real training, killed at random moments: does it go on as if nothing had happened?"""
+"""The commands of tests/robustness/kills, under the names that committed results carry."""

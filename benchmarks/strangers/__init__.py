@@ -1,1 +1,1 @@
-"""Files from strangers: valid ones of every kind, mutated, and what the readers make of them."""
+"""The command of tests/robustness/hostile_files, under the name that committed results carry."""

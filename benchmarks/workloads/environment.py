@@ -14,10 +14,12 @@ from benchmarks.measurements import Figure, Metric
 from benchmarks.spread import all_devices
 from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
+from jaxleas.envs.starts import draw_picks, pool_of, restart_where
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ICRA81, THESIS144
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_picks, draw_starts, restart_where, take
+from jaxleas.envs.steering.starts import begin, draw_starts
+from jaxleas.envs.steering.task import Steering
 from jaxleas.envs.steering.world import World
 from jaxleas.training.worlds import training_world
 
@@ -34,7 +36,8 @@ def _measure(layout: str, robots: int, context: Context) -> dict[str, Figure]:
 
 
 def _of_arenas(arenas: int, context: Context) -> dict[str, Figure]:
-    world = training_world(changed(context.config, terrain={"arenas": arenas}))
+    config = changed(context.config, terrain={"arenas": arenas})
+    world = training_world(config, Steering(config.env, config.terrain))
     # The roofs were measured over the shipped terrain: no limit.
     return {f"env_arenas_{arenas}": Figure(rates(context.env, world, ARENA_ROBOTS, context))}
 
@@ -69,8 +72,8 @@ def rates(
 
 def _begin(env: SteeringEnv, world: World, robots: int):
     pool_key, take_key, key = jax.random.split(jax.random.key(0), 3)
-    pool = jax.jit(lambda: draw_starts(env, world, pool_key, robots))()
-    return *take(pool, take_key, robots), key
+    start = jax.jit(lambda: begin(env, world, (pool_key, take_key), robots, of=robots))
+    return *start(), key
 
 
 def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
@@ -84,7 +87,7 @@ def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
     def walk(world: World, state):
         episode, observation, key = state
         key, pool_key, action_key, restart_key = jax.random.split(key, 4)
-        pool = draw_starts(env, world, pool_key, candidates) if candidates else None
+        pool = pool_of(draw_starts(env, world, pool_key, candidates)) if candidates else None
         # Two actions from each random word: drawing them is no work of the environment's.
         shape = (unroll, robots, env.action_size)
         words = jax.random.bits(action_key, (*shape[:2], env.action_size // 2))

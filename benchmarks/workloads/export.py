@@ -12,9 +12,10 @@ from benchmarks.timing import seconds_a_call
 from benchmarks.workloads.workload import Workload
 from jaxleas.envs.steering.layout import ACTION_SIZE
 from jaxleas.export import build_onnx
-from jaxleas.guide.onnx_metadata import describe
+from jaxleas.export.write import described
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of
 
 BATCHES = (1, 1024)
@@ -23,10 +24,11 @@ BATCHES = (1, 1024)
 def _measure(batch: int, context: Context) -> dict[str, Figure]:
     env, network = context.env, context.config.network
     # Untrained: what the weights are does not change how long they take.
-    params = make_networks(network, env).policy_network.init(jax.random.key(0))
-    normaliser = initial_normaliser(network, env)
-    policy = policy_of(env, network.activation, normaliser, params)
-    exported = onnx_policy_from_bytes(build_onnx(policy, describe(env.config)), "the benchmark's")
+    networks = make_networks(network, env.config.signature())
+    params = networks.actor.init(jax.random.key(0))
+    normaliser = initial_normaliser(network, networks.signature)
+    policy = policy_of(networks, env.config, normaliser, params)
+    exported = onnx_policy_from_bytes(build_onnx(policy, described(env.config)), "the benchmark's")
     random = np.random.default_rng(0)
     observation = random.uniform(-1, 1, (batch, env.layout.size)).astype(np.float32)
     seconds = seconds_a_call(lambda: exported(observation), context.runs)

@@ -11,11 +11,10 @@ begin = time.perf_counter()
 
 import jax  # noqa: E402
 
-from jaxleas.configuration.loading import load_config  # noqa: E402
-from jaxleas.training.config import RunConfig  # noqa: E402
 from jaxleas.training.cores import share_cores  # noqa: E402
 from jaxleas.training.devices import choose_devices  # noqa: E402
-from jaxleas.training.loop import Trainer  # noqa: E402
+from jaxleas.training.run_config import load_run_config, make_task  # noqa: E402
+from jaxleas.training.trainer import Trainer  # noqa: E402
 from jaxleas.xla.compilation import keep_compiled_programs  # noqa: E402
 
 
@@ -24,9 +23,9 @@ def main() -> None:
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     keep_compiled_programs()
     imported = time.perf_counter()
-    config = load_config(RunConfig, sys.argv[1])
+    config = load_run_config(sys.argv[1])
     share_cores(config.ppo)
-    trainer = Trainer(config, devices=choose_devices("all", config.ppo))
+    trainer = Trainer(config, make_task(config), choose_devices("all", config.ppo))
     prepared = time.perf_counter()
     state = trainer.fresh_state()
     jax.block_until_ready(state)

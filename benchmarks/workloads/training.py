@@ -12,10 +12,11 @@ from benchmarks.context import Context, changed
 from benchmarks.measurements import Figure, Metric
 from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
+from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import ICRA81
-from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import choose_devices
-from jaxleas.training.loop import Trainer
+from jaxleas.training.run_config import AnyRun, make_task
+from jaxleas.training.trainer import Trainer
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
 ARENAS = (16, 256)
@@ -56,14 +57,14 @@ def _of_width(width: int, context: Context) -> dict[str, Figure]:
 
 def _measure(
     name: str,
-    config: RunConfig,
+    config: AnyRun,
     context: Context,
     rival: str | None = None,
     limited: bool = True,
 ) -> dict[str, Figure]:
     """Return steps a second, and the memory of the compiled step [MiB]."""
     devices = choose_devices("all", config.ppo)
-    trainer = Trainer(config, devices=devices)
+    trainer = Trainer(config, make_task(config), devices)
     held = [trainer.fresh_state()]
     step = trainer.train_step.lower(trainer.world, held[0]).compile()  # type: ignore[attr-defined]
 
@@ -74,7 +75,7 @@ def _measure(
     seconds = seconds_a_call(not_far_ahead(call), context.runs)
     speed = Figure(
         [config.ppo.batch / each for each in seconds],
-        context.ppo_limit(config, trainer.env) if limited else None,
+        context.ppo_limit(config, SteeringEnv(config.env)) if limited else None,
         context.rival.figure(rival) if rival else None,
     )
     each = step_memory(step)

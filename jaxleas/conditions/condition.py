@@ -7,8 +7,9 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.types import InputError, RootMotion
+from jaxleas.types.ground import NO_GROUND_IN_ROOT
 
-VOID_IN_ROOT = -100.0
+VOID_IN_ROOT = NO_GROUND_IN_ROOT
 """Height in the root frame [m] at or below which there is no ground."""
 
 MARGIN_LIMIT = 1.0

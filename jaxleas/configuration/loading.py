@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from jaxleas.configuration.fields import fields_of, help_text, nearest
+from jaxleas.configuration.former import present_name, with_present_names
 from jaxleas.configuration.strict import Strict
 from jaxleas.configuration.yaml_text import dump_yaml, parse_yaml, read_mapping
 from jaxleas.types.errors import InputError
@@ -42,15 +43,37 @@ def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] =
         InputError: one sentence that names the file (or the command line), the key, what was
             given, and what would do.
     """
-    layers = _layers(Path(path), ())
+    return load_layers(model, layers_of(path), overrides)
+
+
+def load_layers(model: type[Model], layers: Layers, overrides: Sequence[str] = ()) -> Model:
+    """Return the configuration that files already read and the command line state together.
+
+    Args:
+        model: the kind of configuration.
+        layers: what the files state, the weakest first.
+        overrides: as `load_config` takes them.
+
+    Raises:
+        InputError: as `load_config`.
+    """
     wants_help = any(argument in ("--help", "-h") for argument in overrides)
     if overrides and not wants_help:
-        layers.append((COMMAND_LINE, _parse_overrides(model, overrides)))
+        layers = [*layers, (COMMAND_LINE, _parse_overrides(model, overrides))]
     config = validate(model, layers)
     if wants_help:
         print(help_text(model, config))
         raise SystemExit(0)
     return config
+
+
+def layers_of(path: str | Path) -> Layers:
+    """Return what a YAML file and those that it extends state, the most basic first.
+
+    Raises:
+        InputError: a file is missing, is no mapping, or extends itself.
+    """
+    return _layers(Path(path), ())
 
 
 def to_yaml(config: Strict) -> str:
@@ -99,6 +122,7 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
             raise InputError(
                 f"{COMMAND_LINE}: '{option}' stands alone; overrides look like --any.field VALUE"
             )
+        name = present_name(model, name)
         if name not in fields:
             raise InputError(f"{COMMAND_LINE}: there is no {option}{hint(name, list(fields), 2)}")
         if not equals:
@@ -128,6 +152,7 @@ def validate(model: type[Model], layers: Layers) -> Model:
     Raises:
         InputError: one sentence that names the layer, the key, and what would do.
     """
+    layers = [(label, with_present_names(model, layer, label)) for label, layer in layers]
     stated: dict[str, Any] = {}
     for _, layer in layers:
         stated = merge(stated, layer)

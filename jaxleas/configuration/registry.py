@@ -63,7 +63,8 @@ class Registry(Generic[Item]):
             InputError: there is no such item, its code may not be run, or it is of another kind.
         """
         if name in self.targets:
-            return load(self.targets[name], self.kind)
+            module, _, attribute = self.targets[name].partition(":")
+            return getattr(import_module(module), attribute)
         if not is_own(name):
             raise InputError(f"there is no {self.kind} {name!r}{self.hint(name)}")
         if name not in allow:
@@ -71,6 +72,8 @@ class Registry(Generic[Item]):
                 f"the {self.kind} {name} is code: if you trust it, give --allow {name} on the"
                 " command line"
             )
+        if (here := str(Path.cwd())) not in sys.path:
+            sys.path.append(here)  # where a person's own modules lie
         item = load(name, self.kind)
         self._require(name, item)
         return item
@@ -92,7 +95,7 @@ def is_own(name: str) -> bool:
 
 
 def load(target: str, kind: str) -> Any:
-    """Import MODULE:NAME; modules of the working folder are found, too.
+    """Import MODULE:NAME.
 
     This runs code: call it for names that a person gave, never for names from a file alone.
 
@@ -100,8 +103,6 @@ def load(target: str, kind: str) -> Any:
         InputError: there is no such module or name.
     """
     module, _, name = target.partition(":")
-    if (here := str(Path.cwd())) not in sys.path:
-        sys.path.append(here)
     try:
         return getattr(import_module(module), name)
     except (ImportError, AttributeError, ValueError) as error:

@@ -1,5 +1,7 @@
 """The base of every configuration section: frozen, and deaf to no misspelling."""
 
+from collections.abc import Mapping
+
 from pydantic import BaseModel, ConfigDict
 
 
@@ -9,3 +11,8 @@ class Strict(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
     )
+
+    @classmethod
+    def former_names(cls) -> Mapping[str, str]:
+        """Return present dotted names of fields by their former ones; files may use either."""
+        return {}

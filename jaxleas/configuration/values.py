@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from jaxleas.configuration.fields import Field, fields_of
+from jaxleas.configuration.former import present_name
 from jaxleas.configuration.loading import hint, merge, validate
 from jaxleas.configuration.strict import Strict
 from jaxleas.types.errors import InputError
@@ -25,6 +26,7 @@ def require_field(model: type[Strict], name: str, source: str) -> Field:
         InputError: there is no such field (with the nearest there is), or it is a whole section.
     """
     fields = {field.name: field for field in fields_of(model)}
+    name = present_name(model, name)
     if name not in fields:
         raise InputError(f"{source}: there is no {name}{hint(name, list(fields))}")
     if fields[name].section is not None:
@@ -72,6 +74,13 @@ def require_value(config: Strict, name: str, value: Any, source: str) -> None:
     except InputError as refusal:
         cause = refusal.__cause__
         errors = cause.errors() if isinstance(cause, ValidationError) else []
-        parts = name.split(".")
+        parts = present_name(type(config), name).split(".")
         if any([str(part) for part in error["loc"]][: len(parts)] == parts for error in errors):
             raise
+
+
+def value_of(config: Any, name: str) -> Any:
+    """Return a field's value by its dotted name."""
+    for part in name.split("."):
+        config = getattr(config, part)
+    return config

@@ -13,6 +13,7 @@ from jaxleas.contacts.reference import reference_foothold
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.boxes import Box
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.scene import Scene
@@ -99,7 +100,14 @@ def problem_from_guide(
                 len(phases),
             )
         names = [_add(surfaces, parts, len(phases), *each) for each in found]
-        phases.append(Phase(foot, wrap(guide.yaw[index]), tuple(names), guide.position[index]))
+        phases.append(
+            Phase(
+                foot,
+                float(wrap_angle_on_host(guide.yaw[index])),
+                tuple(names),
+                guide.position[index],
+            )
+        )
     return ContactProblem(
         robot=robot,
         model=model,
@@ -137,11 +145,6 @@ def _add(
         name += "'"
     surfaces[name], parts[name] = part, whole
     return name
-
-
-def wrap(angle: float) -> float:
-    """Return an angle in [-pi, pi) [rad]."""
-    return (float(angle) + math.pi) % (2.0 * math.pi) - math.pi
 
 
 class _Finder:
@@ -190,7 +193,7 @@ def _initial(
     guide: GuidePath, surfaces: dict[str, ContactSurface], robot: Robot
 ) -> dict[str, FootPose]:
     """Stand each foot on the ground nearest to its reference place beside the first root."""
-    yaw, root = wrap(guide.yaw[0]), guide.position[0]
+    yaw, root = float(wrap_angle_on_host(guide.yaw[0])), guide.position[0]
     legs = [robot.limbs[index].range_of_motion for index in robot.feet]
     lowest = min(float(reach.vertices[:, 2].min()) for reach in legs)
     poses = {}

@@ -21,7 +21,6 @@ from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
-LATE = "time limit"
 MOST_BEYOND = 1.0
 """A root further beyond the scene's surfaces [m] can stand on none."""
 
@@ -60,11 +59,12 @@ def plan_sampling(
     walked = walk.plans()[0]
     seconds = time.perf_counter() - begin
     plan = contact_plan(walked, feet, settings.contact_lift).but(seconds=seconds)
-    if "neither foot" in walked.reason:
+    if walked.ending == "no_contact":
         plan = plan.but(reason=f"{plan.reason}: {walk.why()}")
-    if LATE in walked.reason:
-        reason = f"not decided within the time limit of {time_limit:g} s"
-        plan = plan.but(status="time_limit", reason=f"{reason}: {plan.reason.partition(': ')[0]}")
+    if walked.ending == "time_limit":
+        late = f"not decided within the time limit of {time_limit:g} s"
+        where = f"stopped at configuration {walked.last_index} of the guide path"
+        plan = plan.but(status="time_limit", reason=f"{late}: {where}")
     if not len(walked):
         return plan
     certificate = certify_postures(plan, guide, scene, robot)
@@ -163,7 +163,7 @@ class _TimedWalk(_Walk):
 
     def _go_on(self) -> tuple[np.ndarray, np.ndarray]:
         if time.perf_counter() > self.deadline:
-            self._stop(np.flatnonzero(self.live), LATE)
+            self._stop(np.flatnonzero(self.live), "time_limit", "its time is over")
         return super()._go_on()
 
 

@@ -5,8 +5,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from jaxleas.configuration.strict import Strict
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.settings import PlannerSettings
@@ -152,5 +150,4 @@ def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
     """Return the root's way up to a configuration per step [m]; None without step."""
     if steps < 1:
         return None
-    walked = np.diff(np.asarray(path.position, dtype=np.float64)[: last_index + 1], axis=0)
-    return float(np.linalg.norm(walked, axis=1).sum() / steps)
+    return path[: last_index + 1].length / steps

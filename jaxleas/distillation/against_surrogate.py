@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.distillation.folder import RoundFolder, read_done
-from jaxleas.distillation.labelling import label_round
+from jaxleas.distillation.labelling import Collection, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
+from jaxleas.labels import Oracle
 from jaxleas.surrogates import (
     Surrogate,
     SurrogateForesight,
@@ -18,7 +19,7 @@ from jaxleas.surrogates import (
     require_fit,
     write_surrogate,
 )
-from jaxleas.training.policy import SteeringPolicy, read_policy
+from jaxleas.training.policy import Policy, read_policy
 
 
 class AgainstSurrogate:
@@ -50,22 +51,20 @@ class AgainstSurrogate:
         policy, report = read_policy(folder.policy), surrogate.report
         return Practised(policy, learned, labelled["guides"], seconds, report)
 
-    def _label(
-        self, number: int, folder: RoundFolder, policy: SteeringPolicy, say: Say
-    ) -> dict[str, Any]:
+    def _label(self, number: int, folder: RoundFolder, policy: Policy, say: Say) -> dict[str, Any]:
         place = self.place
         if not folder.labelled.is_file():
             label_round(
                 folder,
                 place.ground,
-                policy,
-                self._surrogate,
-                place.config.planner,
-                place.labelling,
-                place.config.collect,
-                place.config.seed + number,
+                Collection(
+                    policy, self._surrogate, place.config.collect, place.config.seed + number
+                ),
+                Oracle(place.config.planner, place.labelling, place.run_config.env.robot),
                 place.workers,
-                lambda done, total: say(f"round {number}: {done} of {total} guide paths judged"),
+                lambda done, total: say(
+                    f"round {number}: {done} of {total} guide paths judged", passing=True
+                ),
             )
         return read_done(folder.labelled, "guides", "seconds")
 
@@ -84,7 +83,9 @@ class AgainstSurrogate:
             place.env,
             place.identity,
             place.config.fit,
-            lambda epoch, loss: say(f"round {number}: fit, epoch {epoch}: {loss:.5f} nats"),
+            lambda epoch, loss: say(
+                f"round {number}: fit, epoch {epoch}: {loss:.5f} nats", passing=True
+            ),
         )
         write_surrogate(folder.surrogate, surrogate)
         return surrogate

@@ -9,12 +9,12 @@ import numpy as np
 from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
+from jaxleas.distillation.walking import before_first, walk_from_starts
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, take
 from jaxleas.envs.steering.world import World
-from jaxleas.training.policy import SteeringPolicy
-from jaxleas.types import GuidePath, RootMotion
+from jaxleas.training.policy import Policy
+from jaxleas.types import GuidePath, RootMotion, cut_walks
 
 HOLD = 10  # steps for which a disturbance lasts: one of a step's length would average out
 
@@ -44,44 +44,47 @@ class Walks:
 
     def paths(self, time_step: float) -> list[GuidePath]:
         """Return each walk as a guide path, cut before its first invalid configuration."""
-        lengths = self.valid.sum(axis=1)
-        return [
-            GuidePath(
-                time=np.arange(length) * time_step,
-                position=self.motion.position[robot, :length],  # type: ignore[arg-type]
-                yaw=self.motion.yaw[robot, :length],  # type: ignore[arg-type]
-                velocity=self.motion.velocity[robot, :length],  # type: ignore[arg-type]
-                valid=np.ones(length, dtype=bool),
-            )
-            for robot, length in enumerate(lengths)
-        ]
+        return cut_walks(self.motion, self.valid, self.valid.sum(axis=1), time_step)
+
+
+@dataclass(frozen=True)
+class WalksWanted:
+    """Which walks to collect.
+
+    Attributes:
+        count: number of walks.
+        steps: steps of each walk.
+        disturbances: standard deviations of the disturbances, one a walk in turn, in units of the
+            action's range; 0 leaves a walk alone.
+    """
+
+    count: int
+    steps: int
+    disturbances: Float[np.ndarray, " kinds"]
 
 
 def collect(
     env: SteeringEnv,
     world: World,
-    policy: SteeringPolicy,
+    policy: Policy,
     key: Key[Array, ""],
-    count: int,
-    steps: int,
-    disturbance: Float[np.ndarray, " kinds"],
+    wanted: WalksWanted,
 ) -> Walks:
-    """Walk `count` robots for `steps` steps, some of them disturbed.
+    """Walk robots with a policy, some of them disturbed.
 
     A planner's limits show where the policy does not go of itself, so disturbances of several
     strengths are added to its actions, each held for a while: one kind a robot, in turn.
 
     Args:
-        env: the task; its condition ends a walk.
+        env: steering task; its condition ends a walk.
         world: terrains and links.
-        policy: that walks.
-        key: consumed here.
-        count: of walks.
-        steps: of each.
-        disturbance: standard deviations, in units of the action's range; 0 leaves a walk alone.
+        policy: policy that walks.
+        key: random key, consumed here.
+        wanted: number, length and disturbances of the walks.
     """
-    scale = jnp.asarray(disturbance, jnp.float32)[jnp.arange(count) % len(disturbance)]
-    motion, valid, map_index = _walk(env, steps, world, policy, key, scale)
+    kinds = jnp.asarray(wanted.disturbances, jnp.float32)
+    scale = kinds[jnp.arange(wanted.count) % len(kinds)]
+    motion, valid, map_index = _walk(env, wanted.steps, world, policy, key, scale)
     host = jax.tree.map(np.asarray, motion)
     return Walks(host, np.asarray(valid), np.asarray(map_index))
 
@@ -91,29 +94,20 @@ def _walk(
     env: SteeringEnv,
     steps: int,
     world: World,
-    policy: SteeringPolicy,
+    policy: Policy,
     key: Array,
     scale: Float[Array, " N"],
 ) -> tuple[RootMotion, Array, Array]:
-    pool_key, take_key, noise_key = jax.random.split(key, 3)
-    count = len(scale)
-    episode, observation = take(draw_starts(env, world, pool_key, 2 * count), take_key, count)
-    weights = RewardParams.of(env.config.reward)
-    shape = (-(-steps // HOLD), count, env.action_size)
+    *start_keys, noise_key = jax.random.split(key, 3)
+    shape = (-(-steps // HOLD), len(scale), env.action_size)
     noise = jnp.repeat(jax.random.normal(noise_key, shape), HOLD, axis=0)[:steps]
 
-    def advance(carry, push):
-        episode, observation, valid = carry
-        action = jnp.clip(policy.action(observation) + scale[:, None] * push, -1.0, 1.0)
-        episode, outcome = env.step(world.atlas, weights, episode, action)
-        valid &= ~outcome.terminated
-        return (episode, outcome.observation, valid), (episode.motion, valid)
+    def act(observation: Array, push: Array) -> tuple[Array, None]:
+        action = policy.action(observation) + scale[:, None] * push
+        return jnp.clip(action, -1.0, 1.0), None
 
-    everyone = jnp.ones(count, dtype=bool)
-    _, record = jax.lax.scan(advance, (episode, observation, everyone), noise)
-    whole = jax.tree.map(
-        lambda first, later: jnp.swapaxes(jnp.concatenate([first[None], later]), 0, 1),
-        (episode.motion, everyone),
-        record,
-    )
-    return *whole, episode.plan.map_index
+    weights = RewardParams.of(env.config.reward)
+    walked = walk_from_starts(env, world, (start_keys[0], start_keys[1]), weights, act, noise)
+    valid = before_first(walked.terminated) & ~walked.terminated
+    valid = jnp.pad(valid, ((0, 0), (1, 0)), constant_values=True)
+    return walked.motion, valid, walked.map_index

@@ -78,7 +78,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     from jaxleas.distillation.report_data import is_distilled
 
     if not is_distilled(Path(run)):
-        from jaxleas.evaluation.commands import report as report_training
+        from jaxleas.reports.commands import report as report_training
 
         return report_training(run, out)
     from jaxleas.distillation.report import write_distilled_report
@@ -89,18 +89,17 @@ def report(run: Path, out: Path | None = None) -> Path:
 
 
 class _Teller:
-    """Tells a stage once, and how far it is every few seconds."""
+    """Shows every stage, and how far it is every few seconds."""
 
     PAUSE = 5.0  # [s]
 
     def __init__(self) -> None:
         self.last = float("-inf")
 
-    def __call__(self, words: str) -> None:
+    def __call__(self, words: str, *, passing: bool = False) -> None:
         from time import monotonic
 
-        counts = " of " in words or "epoch" in words or "judges" in words
-        if counts and monotonic() - self.last < self.PAUSE:
+        if passing and monotonic() - self.last < self.PAUSE:
             return
         self.last = monotonic()
         print(words, flush=True)

@@ -1,5 +1,6 @@
 """What a distillation is told: which planner, how many rounds, and what is done in each."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, JsonValue, field_validator, model_validator
@@ -7,10 +8,12 @@ from pydantic import AfterValidator, Field, JsonValue, field_validator, model_va
 from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Whole
 from jaxleas.configuration.strict import Strict
 from jaxleas.contacts.registry import DEFAULT_JUDGE, require_planner_name
+from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
 from jaxleas.evaluation.recipes import RECIPES
-from jaxleas.surrogates.fit import FitSettings
-from jaxleas.training.config import RunConfig, TerrainConfig
+from jaxleas.surrogates.settings import FitSettings
+from jaxleas.training.config import RunConfig
 
+SteeringRun = RunConfig[SteeringConfig, TerrainConfig]
 Observation = Literal["thesis144", "thesis145", "icra81"]
 RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]
 
@@ -110,13 +113,19 @@ class DistillationConfig(Strict):
     """Rounds without a rise after which it ends."""
     seed: Seed = 0
     """Of the guide paths and the fits."""
-    run: RunConfig = RunConfig()
+    run: SteeringRun = SteeringRun()
     """Of the policy to begin with, where none is given, and the base of every round's practice."""
     collect: CollectConfig = CollectConfig()
     fit: FitSettings = FitSettings()
     practice: PracticeConfig = PracticeConfig()
     faithful: FaithfulConfig = FaithfulConfig()
     judge: JudgeConfig = JudgeConfig()
+
+    @classmethod
+    def former_names(cls) -> Mapping[str, str]:
+        """Return the fields of `run` that its files may still call otherwise."""
+        names = SteeringRun.former_names().items()
+        return {f"run.{former}": f"run.{present}" for former, present in names}
 
     @property
     def labelling_parameters(self) -> dict[str, JsonValue]:

@@ -9,6 +9,7 @@ from jax import Array
 from jaxtyping import Float, Int
 
 from jaxleas.distillation.episodes import Episodes
+from jaxleas.envs.heads.normal import NormalDistribution
 from jaxleas.labels import Verdict
 from jaxleas.training.loss import Experience
 
@@ -114,5 +115,12 @@ def to_experience(
         return jnp.asarray(array.reshape(environments, unroll, *array.shape[1:]).swapaxes(0, 1))
 
     after = steps["observation"][unroll::unroll][:environments]
-    flags = {name: rows(name).astype(jnp.float32) for name in ("terminated", "truncated")}
-    return Experience(**{name: rows(name) for name in _KEPT}, **flags), jnp.asarray(after)
+    experience = Experience(
+        observation=rows("observation"),
+        raw_action=rows("raw_action"),
+        distributions=(NormalDistribution(rows("location"), rows("deviation")),),
+        reward=rows("reward"),
+        terminated=rows("terminated").astype(jnp.float32),
+        truncated=rows("truncated").astype(jnp.float32),
+    )
+    return experience, jnp.asarray(after)

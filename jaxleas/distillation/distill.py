@@ -9,7 +9,13 @@ import time
 from jaxleas.distillation.against_planner import AgainstPlanner
 from jaxleas.distillation.against_surrogate import AgainstSurrogate
 from jaxleas.distillation.folder import read_done
-from jaxleas.distillation.judging import exact_success, judge_round, mean_robustness, summary
+from jaxleas.distillation.judging import (
+    Examiner,
+    exact_success,
+    judge_round,
+    mean_robustness,
+    summary,
+)
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.round_result import RoundResult
 from jaxleas.distillation.rounds import (
@@ -20,7 +26,7 @@ from jaxleas.distillation.rounds import (
     known_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
-from jaxleas.evaluation.table import refined_name
+from jaxleas.evaluation.titles import refined_name
 from jaxleas.training.policy import read_policy
 
 _MODES = {"surrogate": AgainstSurrogate, "faithful": AgainstPlanner}
@@ -31,7 +37,7 @@ def run_rounds(place: Workplace, say: Say) -> list[RoundResult]:
 
     Args:
         place: what is worked with.
-        say: told, in words, what is done now.
+        say: shows what is done now.
     """
     mode: Mode = _MODES[place.config.mode](place)
     known = known_rounds(place.folder)
@@ -72,10 +78,9 @@ def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> Rou
         place.folder.round(number).judged,
         practised.policy,
         refined_name(planner) if number else "leas_p1",
-        planner,
-        place.judge,
+        Examiner(planner, place.judge),
         place.config.judge,
-        lambda words: say(f"round {number}: the exact planner judges {words}"),
+        lambda words: say(f"round {number}: the exact planner judges {words}", passing=True),
     )
     seconds = practised.seconds | {"judgement": round(time.perf_counter() - begun, 1)}
     success, by_cell = exact_success(cells), dict(summary(cells))

@@ -11,12 +11,13 @@ from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.distillation.collect import Walks
+from jaxleas.distillation.config import SteeringRun
+from jaxleas.distillation.walking import walk_from_starts
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.world import World
-from jaxleas.training.config import RunConfig
-from jaxleas.training.loss import action_distribution
-from jaxleas.training.networks import dense, normalise
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
 
@@ -58,12 +59,13 @@ class Episodes:
         return len(self.steps)
 
 
-def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
+def make_walk(config: SteeringRun, env: SteeringEnv, networks: ActorCritic, robots: int) -> Walk:
     """Return the walk: fresh starts, then one whole episode each. It is pure; jit it.
 
     Args:
         config: of the run.
         env: the task; its condition ends an episode, the exact planner is asked later.
+        networks: actor and critic.
         robots: that walk at once.
 
     Returns:
@@ -72,46 +74,35 @@ def make_walk(config: RunConfig, env: SteeringEnv, robots: int) -> Walk:
     steps, numbers = config.env.episode_steps, PpoParams.of(config)
 
     def walk(world: World, state: TrainState, key: Key[Array, ""]) -> Any:
-        pool_key, take_key, noise_key = jax.random.split(key, 3)
-        pool = draw_starts(env, world, pool_key, 2 * robots)
-        episode, observation = take(pool, take_key, robots)
+        *start_keys, noise_key = jax.random.split(key, 3)
         progress = state.update.astype(jnp.float32) / config.ppo.updates
-        weights = numbers.reward_weights(progress)
+        weights = RewardParams.at(numbers.task, progress)
         noise = jax.random.normal(noise_key, (steps, robots, env.action_size))
 
-        def advance(carry, noise_now):
-            episode, observation, walking = carry
+        def act(observation: Array, noise_now: Array) -> tuple[Array, Any]:
             normalised = normalise(observation, state.normaliser)
-            location, deviation = action_distribution(
-                dense(state.params.policy, normalised, config.network)
-            )
-            raw_action = location + deviation * noise_now
-            after, outcome = env.step(world.atlas, weights, episode, jnp.tanh(raw_action))
-            terminated = walking & outcome.terminated
-            record = {
+            logits = networks.answer(state.params.policy, normalised)
+            (distribution,) = networks.signature.distributions(logits)
+            raw_action = networks.signature.sample((distribution,), (noise_now,))
+            choice = {
                 "observation": observation,
                 "raw_action": raw_action,
-                "location": location,
-                "deviation": deviation,
-                "reward": outcome.reward,
-                "terminated": terminated,
-                "reached": walking & outcome.reached,
-                "walked": walking,
+                "location": distribution.location,
+                "deviation": distribution.deviation,
             }
-            valid = walking & ~outcome.terminated
-            ended = outcome.terminated | outcome.truncated
-            return (after, outcome.observation, walking & ~ended), (record, after.motion, valid)
+            return jnp.tanh(raw_action), choice
 
-        everyone = jnp.ones(robots, dtype=bool)
-        _, (record, motion, valid) = jax.lax.scan(advance, (episode, observation, everyone), noise)
-        whole = jax.tree.map(
-            lambda first, later: jnp.concatenate([first[None], later]),
-            (episode.motion, everyone),
-            (motion, valid),
-        )
-        robot_first = jax.tree.map(lambda leaf: jnp.swapaxes(leaf, 0, 1), (record, whole))
+        walked = walk_from_starts(env, world, (start_keys[0], start_keys[1]), weights, act, noise)
+        record = walked.choice | {
+            "reward": walked.reward,
+            "terminated": walked.walking & walked.terminated,
+            "reached": walked.walking & walked.reached,
+            "walked": walked.walking,
+        }
+        valid = walked.walking & ~walked.terminated
+        valid = jnp.pad(valid, ((0, 0), (1, 0)), constant_values=True)
         cost = weights.alive + weights.failure
-        return robot_first, episode.plan.map_index, cost, state.update
+        return (record, (walked.motion, valid)), walked.map_index, cost, state.update
 
     return walk
 

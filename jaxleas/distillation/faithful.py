@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.distillation.config import FaithfulConfig
+from jaxleas.distillation.config import FaithfulConfig, SteeringRun
 from jaxleas.distillation.cutting import Stream, cut, to_experience
 from jaxleas.distillation.episodes import Episodes, make_walk, to_host
 from jaxleas.distillation.faithful_metrics import Tally, batch_metrics
@@ -24,11 +24,11 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.labels import Judge, Verdict
 from jaxleas.terrain.scene import Scene
-from jaxleas.training.config import RunConfig
-from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.ppo import make_update
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import Learned, TrainState, fresh_networks, make_optimiser
+from jaxleas.training.train_state import Learned, TrainState, make_optimiser
 
 Wave = tuple[Episodes, list[Verdict]]
 
@@ -48,7 +48,7 @@ class Faithful:
         tally: what has been walked and judged since the last update.
     """
 
-    config: RunConfig
+    config: SteeringRun
     faithful: FaithfulConfig
     env: SteeringEnv
     world: World
@@ -58,10 +58,10 @@ class Faithful:
     tally: Tally = field(init=False)
 
     def __post_init__(self) -> None:
-        self.networks = make_networks(self.config.network, self.env)
+        self.networks = make_networks(self.config.network, self.config.env.signature())
         robots = self.faithful.robots
-        self._walk = jax.jit(make_walk(self.config, self.env, robots))
-        self._update = jax.jit(make_update(self.config, self.env))
+        self._walk = jax.jit(make_walk(self.config, self.env, self.networks, robots))
+        self._update = jax.jit(make_update(self.config, self.networks))
         self._empty()
 
     def _empty(self) -> None:
@@ -78,13 +78,13 @@ class Faithful:
             InputError: the networks to begin with are of other sizes.
         """
         key, policy_key, value_key = jax.random.split(jax.random.key(self.config.seed), 3)
-        params = fresh_networks(self.networks, policy_key, value_key)
+        params = self.networks.init(policy_key, value_key)
         state = TrainState(
             params=params,
             averaged=params.policy,
             optimiser=make_optimiser(self.config.ppo, PpoParams.of(self.config)).init(params),
-            normaliser=initial_normaliser(self.config.network, self.env),
-            episode=(),  # type: ignore[arg-type]  (no episode outlasts its wave)
+            normaliser=initial_normaliser(self.config.network, self.networks.signature),
+            episode=(),  # no episode outlasts its wave
             observation=(),  # type: ignore[arg-type]
             key=key,
             update=jnp.int32(0),
@@ -155,7 +155,7 @@ class Faithful:
         return episodes, self.judge.judge(self.scenes, paths, episodes.walks.map_index)
 
 
-def staleness_bound(config: RunConfig, faithful: FaithfulConfig) -> int:
+def staleness_bound(config: SteeringRun, faithful: FaithfulConfig) -> int:
     """Return how many updates may lie between a step's walk and its being learned from, at most.
 
     Before a wave's last step is learned from, at most `ahead` waves that flew before it, the wave

@@ -10,12 +10,13 @@ from jaxleas.configuration.loading import to_yaml
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.practice import conclude
+from jaxleas.envs.steering.task import Steering
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.runs.folder import RunFolder
 from jaxleas.runs.interruption import Interruption
 from jaxleas.runs.metrics import MetricsLog
 from jaxleas.runs.progress import Progress
-from jaxleas.training.held_out import make_examination
+from jaxleas.training.examination import make_examination
 from jaxleas.training.loop import POLICY_FILE, InterruptedRunError, NonFiniteError
 from jaxleas.training.policy import policy_of, write_policy
 from jaxleas.training.train_state import Learned, TrainState
@@ -84,9 +85,10 @@ class _Desk:
     progress: Progress
 
     def __post_init__(self) -> None:
-        config, env = self.training.config, self.training.env
-        self.held_out = held_out_world(config)
-        self.examine = jax.jit(make_examination(config, env, self.training.networks))
+        config = self.training.config
+        task = Steering(config.env, config.terrain)
+        self.held_out = held_out_world(config, task)
+        self.examine = jax.jit(make_examination(config, task, self.training.networks))
 
     def record(self, state: TrainState, metrics: dict[str, Any]) -> None:
         """Log an update; now and then examine and save."""
@@ -116,8 +118,6 @@ class _Desk:
     def save(self, state: TrainState) -> None:
         """Keep state and policy."""
         config = self.training.config
-        policy = policy_of(
-            self.training.env, config.network.activation, state.normaliser, state.averaged
-        )
+        policy = policy_of(self.training.networks, config.env, state.normaliser, state.averaged)
         write_policy(self.run.path / POLICY_FILE, policy)
         self.checkpoints.save(int(state.update) * config.ppo.batch, state, {})

@@ -1,41 +1,48 @@
 """A round's verdict: the exact planner judges the policy on held-out terrain, a cell at a time."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from jaxleas.distillation.config import JudgeConfig
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import Planner, judge_exact, walker
+from jaxleas.evaluation.exact import Bookkeeping, Planner, judge_exact, walker
 from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide.leas import leas
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import InputError
 
 VERSION = 1
 
 
+@dataclass(frozen=True)
+class Examiner:
+    """An exact planner and the name that results give it."""
+
+    name: str
+    planner: Planner
+
+
 def judge_round(
     file: Path,
-    policy: SteeringPolicy,
+    policy: Policy,
     method: str,
-    planner: str,
-    judge: Planner,
+    examiner: Examiner,
     config: JudgeConfig,
     progress: Callable[[str], None],
 ) -> list[CellResult]:
     """Judge a policy, or read what was judged before.
 
     Args:
-        file: where the verdicts are kept.
-        policy: to be judged.
-        method: its name in the results.
-        planner: its name.
-        judge: that asks it.
-        config: which suites, how many starts.
-        progress: told, in words, what is judged now.
+        file: file that keeps the results.
+        policy: policy to be judged.
+        method: name of the policy in the results.
+        examiner: exact planner that judges.
+        config: suites and number of starts.
+        progress: called with what is judged now, in words.
     """
     if file.is_file():
         return read_judged(file)
@@ -47,8 +54,10 @@ def judge_round(
             env,
             {method: walker(env, leas(env, policy))},
             suite,
-            {planner: judge},
-            on_guides=lambda cell, *_: progress(f"{cell.name} at {cell.yaw:.0f} deg"),
+            {examiner.name: examiner.planner},
+            bookkeeping=Bookkeeping(
+                on_guides=lambda cell, *_: progress(f"{cell.name} at {cell.yaw:.0f} deg")
+            ),
         )
     write_json(
         file,
@@ -56,7 +65,7 @@ def judge_round(
             "version": VERSION,
             "held_out": True,
             "suites": list(config.suites),
-            "planner": planner,
+            "planner": examiner.name,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
             "cells": [cell.model_dump(mode="json") for cell in cells],
         },

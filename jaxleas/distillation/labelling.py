@@ -8,17 +8,17 @@ import jax
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.distillation.collect import Walks, collect
+from jaxleas.distillation.collect import Walks, WalksWanted, collect
 from jaxleas.distillation.config import CollectConfig
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.files import write_json
 from jaxleas.guide.files import Reason, write_guide_paths
-from jaxleas.labels import Oracle, PlannerSettings, Workers, label_shards, plan_shards
+from jaxleas.labels import Oracle, Workers, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.scene import Scene, write_scene
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 
 
 @dataclass(frozen=True)
@@ -36,43 +36,52 @@ class Ground:
     scenes: tuple[Scene, ...]
 
 
+@dataclass(frozen=True)
+class Collection:
+    """How a round's guide paths come about.
+
+    Attributes:
+        policy: policy that walks.
+        surrogate: surrogate of the round before, to choose by; None in the first round.
+        config: number, length and disturbances of the walks.
+        seed: seed of the walks and of the choice.
+    """
+
+    policy: Policy
+    surrogate: Surrogate | None
+    config: CollectConfig
+    seed: int
+
+
 def label_round(
     folder: RoundFolder,
     ground: Ground,
-    policy: SteeringPolicy,
-    surrogate: Surrogate | None,
-    planner: str,
-    settings: PlannerSettings,
-    config: CollectConfig,
-    seed: int,
+    collection: Collection,
+    oracle: Oracle,
     workers: Workers,
     progress: Callable[[int, int], None],
 ) -> None:
     """Leave scenes, guide paths and verdicts in a round's folder; what is there stays.
 
     Args:
-        folder: of the round.
-        ground: to walk on.
-        policy: that walks.
-        surrogate: of the round before, to choose by; None in the first.
-        planner: its name.
-        settings: of the planner.
-        config: how many, how long, how disturbed.
-        seed: of the walks and of the choice.
-        workers: that judge.
-        progress: told how many guide paths of how many have verdicts.
+        folder: folder of the round.
+        ground: terrains to walk on.
+        collection: guide paths to collect.
+        oracle: exact planner to ask about them.
+        workers: workers that ask it.
+        progress: called with the number of guide paths that have verdicts, and of all.
     """
     begun = time.perf_counter()
     files = sorted(folder.labels.glob("guides_*.npz"))
     if not (folder.labels / "chosen.json").is_file():
-        walks = _walk(ground, policy, surrogate, config, seed)
+        walks = _walk(ground, collection)
         paths = walks.paths(ground.env.config.limits.time_step)
         for number in np.unique(walks.map_index).tolist():
             chosen = [paths[row] for row in np.flatnonzero(walks.map_index == number)]
             cut: list[Reason] = ["stopped"] * len(chosen)
             write_scene(folder.labels / f"scene_{number:04d}.json", ground.scenes[number])
             write_guide_paths(folder.labels / f"guides_{number:04d}.npz", chosen, cut)
-        write_json(folder.labels / "chosen.json", {"guides": len(paths), "seed": seed})
+        write_json(folder.labels / "chosen.json", {"guides": len(paths), "seed": collection.seed})
         files = sorted(folder.labels.glob("guides_*.npz"))
     shards = [
         shard
@@ -80,7 +89,7 @@ def label_round(
         for shard in plan_shards(
             [guides],
             guides.with_name(guides.name.replace("guides", "scene")).with_suffix(".json"),
-            Oracle(planner, settings, ground.env.config.robot),
+            oracle,
             folder.labels / "verdicts",
         )
     ]
@@ -96,23 +105,16 @@ def label_round(
     write_json(folder.labelled, {"guides": total, "judged": judged, "seconds": round(seconds, 1)})
 
 
-def _walk(
-    ground: Ground,
-    policy: SteeringPolicy,
-    surrogate: Surrogate | None,
-    config: CollectConfig,
-    seed: int,
-) -> Walks:
+def _walk(ground: Ground, collection: Collection) -> Walks:
+    config, surrogate = collection.config, collection.surrogate
     wanted = config.guides if surrogate is None else config.later_guides
     count = wanted if surrogate is None else wanted * config.candidates
     walks = collect(
         ground.env,
         ground.world,
-        policy,
-        jax.random.key(seed),
-        count,
-        config.steps,
-        np.array(config.disturbances),
+        collection.policy,
+        jax.random.key(collection.seed),
+        WalksWanted(count, config.steps, np.array(config.disturbances)),
     )
     if surrogate is None or config.candidates == 1:
         return walks
@@ -126,7 +128,7 @@ def _walk(
         1 + config.steps // keep_every,
     )
     failure = foreseen_failure(surrogate, ground.env, ground.world.atlas, labelled)
-    return walks[choose(failure, wanted, np.random.default_rng(seed))]
+    return walks[choose(failure, wanted, np.random.default_rng(collection.seed))]
 
 
 def choose(

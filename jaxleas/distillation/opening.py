@@ -2,17 +2,19 @@
 
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.contacts.registry import find_planner
-from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
+from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.files import write_json, write_text
 from jaxleas.runs.folder import RunFolder
-from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
+from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
 
@@ -61,13 +63,13 @@ def open_folder(
     return config
 
 
-def first_run(config: DistillationConfig, start: Path | None) -> RunConfig:
+def first_run(config: DistillationConfig, start: Path | None) -> SteeringRun:
     """Return the configuration of the run that is begun with, or is yet to be trained.
 
     Raises:
         InputError: `start` is no run folder.
     """
-    return config.run if start is None else load_config(RunConfig, RunFolder.open(start).config)
+    return config.run if start is None else load_steering_run(RunFolder.open(start).config)
 
 
 def train_start(folder: DistillationFolder, config: DistillationConfig, devices: Devices) -> Path:
@@ -89,5 +91,17 @@ def train_start(folder: DistillationFolder, config: DistillationConfig, devices:
     else:
         run = RunFolder.create(folder.start, to_yaml(config.run), ["jaxleas", "distill"])
     with run:
-        train(load_config(RunConfig, run.config), run, devices=devices)
+        train(load_steering_run(run.config), run, devices=devices)
     return folder.start
+
+
+def load_steering_run(path: Path) -> SteeringRun:
+    """Return the configuration of a run of steering.
+
+    Raises:
+        InputError: it cannot be read, or is of another task.
+    """
+    config: Any = load_run_config(path)
+    if not isinstance(config.env, SteeringConfig):
+        raise InputError(f"{path} is a run of the task {config.env.task}; one of steering would do")
+    return config

@@ -6,24 +6,25 @@ from pathlib import Path
 import jax
 
 from jaxleas.conditions import Foresight
-from jaxleas.configuration.loading import load_config, to_yaml
-from jaxleas.distillation.config import DistillationConfig
+from jaxleas.configuration.loading import to_yaml
+from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.distillation.opening import load_steering_run
+from jaxleas.envs.steering.task import Steering
 from jaxleas.files import write_json
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.runs.folder import RunFolder
-from jaxleas.training.config import NetworkConfig, RunConfig
 from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
-from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.train_state import Learned, fresh_networks
+from jaxleas.training.train_state import Learned
 
 
 def practice_config(
-    config: DistillationConfig, start: RunConfig, steps: int | None = None
-) -> RunConfig:
+    config: DistillationConfig, start: SteeringRun, steps: int | None = None
+) -> SteeringRun:
     """Return the configuration of a round's run.
 
     The networks are those of the policy begun with. Falling is as dear from the first step on as
@@ -40,10 +41,10 @@ def practice_config(
         "final_learning_rate": config.practice.final_learning_rate,
     }
     ppo = start.ppo.model_copy(update=changes)
-    dear = {"failure": start.ppo.final_failure}
+    dear = {"failure": start.env.reward.final_failure}
     reward = start.env.reward.model_copy(update=dear | config.practice.reward)
     if "failure" in config.practice.reward:
-        ppo = ppo.model_copy(update={"final_failure": reward.failure})
+        reward = reward.model_copy(update={"final_failure": reward.failure})
     speed = config.practice.desired_speed or start.env.desired_speed
     env = start.env.model_copy(update={"reward": reward, "desired_speed": speed})
     return start.model_copy(update={"ppo": ppo, "env": env})
@@ -51,7 +52,7 @@ def practice_config(
 
 def practise(
     folder: RoundFolder,
-    config: RunConfig,
+    config: SteeringRun,
     foresight: Foresight | None,
     learned: Learned,
     devices: Devices,
@@ -74,11 +75,12 @@ def practise(
     else:
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
-        train(config, run, devices=devices, foresight=foresight, learned=learned)
+        task = Steering(config.env, config.terrain, foresight=foresight)
+        train(config, run, task=task, devices=devices, learned=learned)
     conclude(folder, config, time.perf_counter() - begun)
 
 
-def conclude(folder: RoundFolder, config: RunConfig, seconds: float) -> None:
+def conclude(folder: RoundFolder, config: SteeringRun, seconds: float) -> None:
     """Keep the average that a practice's run ended with as the round's policy.
 
     Args:
@@ -87,26 +89,27 @@ def conclude(folder: RoundFolder, config: RunConfig, seconds: float) -> None:
         seconds: that the practice took.
     """
     _, after = read_run(folder.run)
-    env = SteeringEnv(config.env)
-    policy = policy_of(env, config.network.activation, after.normaliser, after.averaged)
+    networks = make_networks(config.network, config.env.signature())
+    policy = policy_of(networks, config.env, after.normaliser, after.averaged)
     write_policy(folder.policy, policy)
     steps = config.ppo.updates * config.ppo.batch
     write_json(folder.practised, {"steps": steps, "seconds": round(seconds, 1)})
 
 
-def read_run(path: str | Path) -> tuple[RunConfig, Learned]:
+def read_run(path: str | Path) -> tuple[SteeringRun, Learned]:
     """Return the configuration of a run and what it has learned by its newest checkpoint.
 
     Raises:
         InputError: it is no run folder, or has no checkpoint that can be read.
     """
     run = RunFolder.open(path)
-    config = load_config(RunConfig, run.config)
-    like = jax.eval_shape(lambda: _fresh(config.network, SteeringEnv(config.env)))
+    config = load_steering_run(run.config)
+    like = jax.eval_shape(lambda: _fresh(config))
     _, learned, _ = Checkpoints(run.checkpoints).latest(like, partial=True)
     return config, learned
 
 
-def _fresh(network: NetworkConfig, env: SteeringEnv) -> Learned:
-    params = fresh_networks(make_networks(network, env), jax.random.key(0), jax.random.key(0))
-    return Learned(params, params.policy, initial_normaliser(network, env))
+def _fresh(config: SteeringRun) -> Learned:
+    signature = config.env.signature()
+    params = make_networks(config.network, signature).init(jax.random.key(0), jax.random.key(0))
+    return Learned(params, params.policy, initial_normaliser(config.network, signature))

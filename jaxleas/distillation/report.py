@@ -9,15 +9,11 @@ from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, read_run_data
 from jaxleas.distillation.report_pictures import draw_calibration, draw_learning, draw_rounds
-from jaxleas.evaluation.figure_pictures import draw_figures
-from jaxleas.evaluation.page import page_template
-from jaxleas.evaluation.published import thesis
-from jaxleas.evaluation.report import inline
-from jaxleas.evaluation.side_by_side import headings as side_headings
-from jaxleas.evaluation.side_by_side import rows as side_rows
-from jaxleas.evaluation.table import cell_title, percent
-from jaxleas.evaluation.thesis_tables import thesis_tables
+from jaxleas.evaluation.titles import cell_title
 from jaxleas.files import write_text
+from jaxleas.reports import draw_figures, inline, page_template, percent, thesis, thesis_tables
+from jaxleas.reports.side_by_side import headings as side_headings
+from jaxleas.reports.side_by_side import rows as side_rows
 
 TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # of what a surrogate is worth

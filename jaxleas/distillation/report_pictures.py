@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jaxleas.distillation.round_result import RoundResult
-from jaxleas.evaluation.learning_curves import series
+from jaxleas.reports import series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,11 +68,11 @@ def draw_learning(
     axes = figure.subplots(1, len(CURVES))
     begins = start[-1]["step"] / 1e6 if start else 0.0
     for ax, (name, (label, factor)) in zip(axes, CURVES.items(), strict=True):
-        _curve(ax, start, name, factor, 0.0, BLUE, "P1: conditions alone")
+        _curve(ax, series(start, name, factor), 0.0, BLUE, "P1: conditions alone")
         offset = begins
         for number, rows in enumerate(practice):
             title = "P2: and the planner" if number == 0 else None
-            _curve(ax, rows, name, factor, offset, RED, title)
+            _curve(ax, series(rows, name, factor), offset, RED, title)
             offset += rows[-1]["step"] / 1e6 if rows else 0.0
         _dress(ax, "environment steps [million]", label)
     handles, labels = axes[0].get_legend_handles_labels()
@@ -82,14 +82,12 @@ def draw_learning(
 
 def _curve(
     ax: "Axes",
-    rows: Sequence[Mapping[str, Any]],
-    name: str,
-    factor: float,
+    curve: tuple[list[float], list[float]],
     offset: float,
     colour: str,
     label: str | None,
 ) -> None:
-    steps, values = series(rows, name, factor)
+    steps, values = curve
     if len(values) > 3 * SMOOTH:
         values = np.convolve(values, np.ones(SMOOTH) / SMOOTH, mode="valid").tolist()
         steps = steps[SMOOTH // 2 :][: len(values)]

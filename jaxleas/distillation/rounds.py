@@ -1,7 +1,7 @@
 """The rounds of a distillation: what each leaves, and the table of them all."""
 
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -10,10 +10,21 @@ from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds, write_rounds
 from jaxleas.files import atomic_path
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.training.train_state import Learned
 
-Say = Callable[[str], None]
+
+class Say(Protocol):
+    """Shows what is done now."""
+
+    def __call__(self, words: str, *, passing: bool = False) -> None:
+        """Show a sentence.
+
+        Args:
+            words: sentence to show.
+            passing: whether it is one of many in a row, of which some may be left out.
+        """
+        ...
 
 
 @dataclass(frozen=True)
@@ -28,7 +39,7 @@ class Practised:
         surrogate: what its fit measured; None where there is none.
     """
 
-    policy: SteeringPolicy
+    policy: Policy
     learned: Learned
     labels: int = 0
     seconds: dict[str, float] = field(default_factory=dict)

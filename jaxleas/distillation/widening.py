@@ -1,15 +1,16 @@
 """Let a policy see more than it was trained with: new inputs begin with weights of zero."""
 
+from dataclasses import replace
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 
+from jaxleas.distillation.config import SteeringRun
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.training.config import RunConfig
-from jaxleas.training.networks import initial_normaliser, scaling_of
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.normaliser import initial_normaliser
+from jaxleas.training.policy import Policy
 from jaxleas.training.train_state import Learned
 from jaxleas.types import InputError
 
@@ -17,8 +18,8 @@ _FIRST_LAYER = "hidden_0"
 
 
 def widen(
-    config: RunConfig, learned: Learned, observation: str | None
-) -> tuple[RunConfig, Learned]:
+    config: SteeringRun, learned: Learned, observation: str | None
+) -> tuple[SteeringRun, Learned]:
     """Return a run's configuration and networks for another observation layout.
 
     They do what they did: the layout has the old one's values first, and what it adds is not
@@ -59,12 +60,12 @@ def widen(
             policy=_wider(learned.params.policy, added), value=_wider(learned.params.value, added)
         ),
         averaged=_wider(learned.averaged, added),
-        normaliser=initial_normaliser(config.network, env),
+        normaliser=initial_normaliser(config.network, env.config.signature()),
     )
     return changed, wider
 
 
-def widen_policy(policy: SteeringPolicy, env: SteeringEnv) -> SteeringPolicy:
+def widen_policy(policy: Policy, env: SteeringEnv) -> Policy:
     """Return a policy as it walks in an environment whose observation only adds to its own.
 
     Args:
@@ -74,12 +75,14 @@ def widen_policy(policy: SteeringPolicy, env: SteeringEnv) -> SteeringPolicy:
     added = env.layout.size - len(policy.mean)
     if not added:
         return policy
-    mean, deviation = scaling_of(env)
-    rows = jnp.zeros((added, policy.kernels[0].shape[1]), policy.kernels[0].dtype)
-    return policy.replace(  # type: ignore[attr-defined]
-        mean=mean,
-        deviation=deviation,
-        kernels=(jnp.concatenate([policy.kernels[0], rows]), *policy.kernels[1:]),
+    signature = env.config.signature()
+    mean, deviation = signature.scaling
+    return Policy(
+        mean=jnp.asarray(mean),
+        deviation=jnp.asarray(deviation),
+        params=_wider(policy.params, added),
+        network=replace(policy.network, inputs=signature.size),  # type: ignore[type-var]
+        signature=signature,
         config=policy.config.model_copy(update={"observation": env.config.observation}),
     )
 

@@ -11,12 +11,13 @@ from jaxleas.distillation.labelling import Ground
 from jaxleas.distillation.practice import read_run
 from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.task import Steering
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
 from jaxleas.labels.judging import PLANNER_MODULES
 from jaxleas.surrogates import Identity
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.devices import Devices, one_device
-from jaxleas.training.policy import SteeringPolicy, read_policy
+from jaxleas.training.policy import Policy, read_policy
 from jaxleas.training.worlds import training_world
 
 POLICY_FILE = "policy.npz"
@@ -74,7 +75,7 @@ class Workplace:
         self.judge = Judge(config.planner, self.settings, workers=self.workers, robot=robot)
 
     @cached_property
-    def policy(self) -> SteeringPolicy:
+    def policy(self) -> Policy:
         """The policy to begin with."""
         return widen_policy(read_policy(f"{self._start}/{POLICY_FILE}"), self.env)
 
@@ -84,7 +85,8 @@ class Workplace:
         terrain = self.run_config.terrain
         seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
         scenes = tuple(generate_arena(terrain.generator, seed).scene for seed in seeds)
-        return Ground(self.env, training_world(self.run_config), scenes)
+        task = Steering(self.run_config.env, terrain)
+        return Ground(self.env, training_world(self.run_config, task), scenes)
 
     @property
     def identity(self) -> Identity:

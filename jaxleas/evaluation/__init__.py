@@ -1,10 +1,9 @@
-"""Evaluation: named suites, success tables with intervals, pictures, the run report."""
+"""Evaluation: named suites, judges, and results with intervals."""
 
-from jaxleas.evaluation.comparison import compare
+from jaxleas.evaluation.comparison import Planning, compare
 from jaxleas.evaluation.contenders import Contenders, make_contenders
 from jaxleas.evaluation.exact import ask, judge_exact, summarise_plans, walker
 from jaxleas.evaluation.judge import judge
-from jaxleas.evaluation.report import write_report
 from jaxleas.evaluation.result_file import (
     CellResult,
     Evaluation,
@@ -20,6 +19,7 @@ __all__ = [
     "CellResult",
     "Contenders",
     "Evaluation",
+    "Planning",
     "Suite",
     "ask",
     "compare",
@@ -32,5 +32,4 @@ __all__ = [
     "walker",
     "wilson_interval",
     "write_evaluation",
-    "write_report",
 ]

@@ -3,15 +3,15 @@
 import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from jaxleas.evaluation.contenders import Contenders
-from jaxleas.evaluation.exact import ResultKey, judge_exact, result_key
+from jaxleas.evaluation.exact import Bookkeeping, ResultKey, judge_exact, result_key
 from jaxleas.evaluation.examination import Candidate, kept_evaluation
 from jaxleas.evaluation.forecast import Forecast
 from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
-from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.labels import Judge, PlannerSettings
 from jaxleas.labels.judging import planner_workers
@@ -21,47 +21,56 @@ _SAME = ("suite", "seed", "robot", "foresight")
 """What must agree before results of one evaluation count in another."""
 
 
+@dataclass(frozen=True)
+class Planning:
+    """How exact planners are asked.
+
+    Attributes:
+        planners: names of the exact planners; without any, the walks alone are counted.
+        settings: settings of the planners, by name; their defaults where not given.
+        processes: number of processes that plan at the same time.
+    """
+
+    planners: tuple[str, ...]
+    settings: Mapping[str, PlannerSettings] = field(default_factory=dict)
+    processes: int = 1
+
+
 def compare(
     candidate: Candidate,
     contenders: Contenders,
     suite: Suite,
-    planners: tuple[str, ...],
+    planning: Planning,
     *,
-    settings: Mapping[str, PlannerSettings] | None = None,
-    processes: int = 1,
     file: Path | None = None,
     say: Callable[[str], None] = lambda text: None,
-    grounds: Grounds | None = None,
 ) -> Evaluation:
     """Judge methods side by side on a suite by exact planners.
 
     Args:
-        candidate: the policy judged; its environment draws the starts.
-        contenders: who walks.
-        suite: to be walked.
-        planners: names of the exact planners; none: the walks alone are counted.
-        settings: of the planners, by name; their defaults where not given.
-        processes: that plan at the same time.
-        file: written after every cell. What it holds already of the same policies, suite, starts,
-            seed and planner settings is kept, and not judged again.
+        candidate: policy to judge; its environment draws the starts.
+        contenders: methods that walk.
+        suite: suite to be walked.
+        planning: exact planners that judge.
+        file: file written after every cell. What it holds already of the same policies, suite,
+            starts, seed and planner settings is kept, and not judged again.
         say: shows progress.
-        grounds: that hold the suite's scenes, if made already.
 
     Returns:
         All results, those of the file included.
     """
-    workers = planner_workers(processes)
+    workers = planner_workers(planning.processes)
     with ExitStack() as stack:
         stack.callback(workers.close)
-        chosen = {} if settings is None else settings
         robot = candidate.env.config.robot
         judges = {
-            name: Judge(name, chosen.get(name), workers=workers, robot=robot) for name in planners
+            name: Judge(name, planning.settings.get(name), workers=workers, robot=robot)
+            for name in planning.planners
         }
         head = _head(candidate, contenders, suite, judges)
         before = None if file is None else kept_evaluation(file, candidate)
         sheet = _Sheet(head, suite, file, before)
-        asked: tuple[str | None, ...] = planners or (None,)
+        asked: tuple[str | None, ...] = planning.planners or (None,)
         forecast = Forecast(suite, len(contenders.walkers), asked, say)
         for key in sheet.results:
             if key[4] in contenders.walkers and key[5] in asked:
@@ -76,10 +85,7 @@ def compare(
             contenders.walkers,
             suite,
             judges,
-            known=dict(sheet.results),
-            on_result=keep,
-            on_guides=forecast.guides,
-            grounds=grounds,
+            bookkeeping=Bookkeeping(dict(sheet.results), keep, forecast.guides),
         )
         return sheet.evaluation()
 

@@ -1,7 +1,8 @@
 """Guide paths judged by exact contact planners: the numbers that count (T 4.3, 5.2.4)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -13,8 +14,10 @@ from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
+from jaxleas.guide.leas import leas
+from jaxleas.guide.loading import load_policy
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.labels import Verdict
+from jaxleas.labels import Judge, PlannerSettings, Verdict
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
@@ -22,6 +25,21 @@ Walker = Callable[[Grounds, Starts, int], Walk]
 """Walks the starts of a cell for at most so many steps: any method, with a roadmap or without."""
 ResultKey = tuple[str, float, float, float, str, str | None]
 """Name, yaw, spread and speed of the cell, method, planner."""
+
+
+@dataclass(frozen=True)
+class Bookkeeping:
+    """What is known of an evaluation already, and what is done with what becomes known.
+
+    Attributes:
+        known: results that are there already; what they say is not asked again.
+        on_result: called with each new result as soon as it is there.
+        on_guides: called with cell, method, planner and the number of guide paths just judged.
+    """
+
+    known: Mapping[ResultKey, CellResult] = field(default_factory=dict)
+    on_result: Callable[[CellResult], None] = lambda result: None
+    on_guides: Callable[[Cell, str, str | None, int], None] = lambda *_: None
 
 
 class Planner(Protocol):
@@ -127,27 +145,23 @@ def judge_exact(
     suite: Suite,
     planners: Mapping[str, Planner],
     *,
-    known: Mapping[ResultKey, CellResult] | None = None,
-    on_result: Callable[[CellResult], None] = lambda result: None,
-    on_guides: Callable[[Cell, str, str | None, int], None] = lambda *_: None,
+    bookkeeping: Bookkeeping | None = None,
     grounds: Grounds | None = None,
 ) -> list[CellResult]:
     """Walk a suite with every method and let every exact planner judge the same guide paths.
 
     Args:
-        env: the task: draws the starts (the same for all), says how long a time step is.
-        walkers: by the name that results carry; `walker` makes one of a steering method.
-        suite: to be walked.
-        planners: by name; none: the walks alone are counted.
-        known: results that are there already; what they say is not asked again.
-        on_result: told each new result as soon as it is there.
-        on_guides: told cell, method, planner and a number of guide paths judged just now.
-        grounds: that hold the suite's scenes, if made already.
+        env: steering task: draws the starts (the same for all), says how long a time step is.
+        walkers: walkers by the name that results carry; `walker` makes one of a steering method.
+        suite: suite to be walked.
+        planners: exact planners by name; without any, the walks alone are counted.
+        bookkeeping: what is known already, and what is done with results; by default nothing.
+        grounds: height maps of the suite's scenes, if made already.
 
     Returns:
-        One result a cell, method and planner, in that order.
+        One result for each cell, method and planner, in that order.
     """
-    known = {} if known is None else known
+    bookkeeping = Bookkeeping() if bookkeeping is None else bookkeeping
     grounds = make_grounds(suite.cells) if grounds is None else grounds
     time_step = env.config.limits.time_step
     results = []
@@ -156,20 +170,43 @@ def judge_exact(
         for method, walks in walkers.items():
             walked = None
             for planner in planners or (None,):
-                result = known.get((*cell.key, method, planner))
+                result = bookkeeping.known.get((*cell.key, method, planner))
                 if result is None:
                     starts = starts or draw_starts(env, grounds, cell, suite.stream())
-                    on_guides(cell, method, planner, 0)
+                    bookkeeping.on_guides(cell, method, planner, 0)
                     walked = walked or walks(grounds, starts, suite.steps_of(cell))
                     if planner is None:
                         result = summarise(cell, method, walked, time_step)
                     else:
-                        told = _counter(on_guides, cell, method, planner)
+                        told = _counter(bookkeeping.on_guides, cell, method, planner)
                         judged = ask(cell, walked, planners[planner], time_step, told)
                         result = summarise_plans(cell, method, planner, judged, time_step)
-                    on_result(result)
+                    bookkeeping.on_result(result)
                 results.append(result)
     return results
+
+
+def exact_success(
+    policy: Path, planner: str, settings: PlannerSettings, suites: Sequence[Suite]
+) -> float:
+    """Return the mean share of starts that reach their goal with contacts all the way.
+
+    Args:
+        policy: file of a steering policy.
+        planner: name of the exact planner.
+        settings: settings of the planner.
+        suites: suites to be walked.
+    """
+    found = load_policy(policy)
+    env = SteeringEnv(found.config)
+    walkers = {"policy": walker(env, leas(env, found))}
+    with Judge(planner, settings, robot=found.config.robot) as judge:
+        shares = [
+            cell.planned or 0.0
+            for suite in suites
+            for cell in judge_exact(env, walkers, suite, {planner: judge})
+        ]
+    return sum(shares) / len(shares)
 
 
 def result_key(result: CellResult) -> ResultKey:

@@ -67,9 +67,8 @@ def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidat
 
 def examine(
     candidate: Candidate,
-    suite: str | Suite,
-    starts: int | None = None,
-    seed: int = 0,
+    suite: Suite,
+    *,
     baseline: bool = True,
     progress: Callable[[str], None] = lambda _: None,
     grounds: Grounds | None = None,
@@ -77,30 +76,24 @@ def examine(
     """Judge a candidate on a suite.
 
     Args:
-        candidate: to judge.
-        suite: one of SUITES, or one made already.
-        starts: a cell; by default what the suite usually has.
-        seed: of scenes and starts, within the evaluation range.
-        baseline: judge RB-Lin and RB-Kino beside it.
-        progress: told which cell is walked now.
-        grounds: that hold the suite's scenes, if made already.
-
-    Raises:
-        InputError: no such suite, or a number is out of range.
+        candidate: policy to judge.
+        suite: suite to judge it on.
+        baseline: whether RB-Lin and RB-Kino are judged besides.
+        progress: called with the cell that is walked now.
+        grounds: height maps of the suite's scenes, if made already.
     """
     begin = time.perf_counter()
-    plan = make_suite(suite, starts, seed) if isinstance(suite, str) else suite
     methods = {
         name: method for name, method in candidate.methods.items() if baseline or name == POLICY
     }
-    cells = judge(candidate.env, methods, plan, progress, grounds)
+    cells = judge(candidate.env, methods, suite, progress, grounds)
     return Evaluation(
-        suite=plan.name,
+        suite=suite.name,
         policy=str(candidate.path),
         fingerprint=candidate.fingerprint,
         foresight=None if candidate.refusal is None else candidate.refusal.describe(),
         robot=candidate.env.config.robot,
-        seed=plan.seed,
+        seed=suite.seed,
         created=now(),
         seconds=round(time.perf_counter() - begin, 2),
         cells=tuple(cells),
@@ -135,7 +128,9 @@ def run_evaluations(
         if evaluation is None:
             suite = stage.suites.get(name)
             grounds = None if suite is None else stage.grounds
-            evaluation = examine(candidate, suite or name, progress=progress, grounds=grounds)
+            evaluation = examine(
+                candidate, suite or make_suite(name), progress=progress, grounds=grounds
+            )
             write_evaluation(path, evaluation)
         evaluations.append(evaluation)
     return evaluations

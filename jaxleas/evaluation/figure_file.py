@@ -1,5 +1,6 @@
 """What the thesis's figures 4.17 and 5.6 to 5.9 are drawn from, as a file of plain numbers."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -79,6 +80,19 @@ class Figures(Strict):
     course_along: tuple[float, ...] = ()
     course_ground: tuple[float | None, ...] = ()
     courses: tuple[Course, ...] = Field(default=())
+
+
+@dataclass(frozen=True)
+class FigureFile:
+    """A figure file on disk.
+
+    Attributes:
+        path: path of the file.
+        figures: its content.
+    """
+
+    path: Path
+    figures: Figures
 
 
 def write_figures(path: str | Path, figures: Figures) -> None:

@@ -1,16 +1,22 @@
 """Measure what the thesis's figures 4.17 and 5.6 to 5.9 show, for any methods (T 4.3.3, 5.2.4)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Judged, Walker, ask
-from jaxleas.evaluation.figure_file import Course, Figures, HeightBand, StepRow, write_figures
+from jaxleas.evaluation.figure_file import (
+    Course,
+    FigureFile,
+    Figures,
+    HeightBand,
+    StepRow,
+    write_figures,
+)
+from jaxleas.evaluation.height_band import height_band
 from jaxleas.evaluation.judge import Walk, rounded
-from jaxleas.evaluation.scene_pictures import height_band
 from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
@@ -25,42 +31,59 @@ KEEP_EVERY = (6, 8, 10, 12, 14, 16, 18, 20)
 BINS = 120
 
 
+@dataclass(frozen=True)
+class Questions:
+    """What an exact planner is asked for the figures.
+
+    Attributes:
+        settings: settings of the planner; every N replaces its `keep_every`.
+        workers: workers that judge.
+        keep_every: values of N.
+    """
+
+    settings: PlannerSettings
+    workers: Workers
+    keep_every: Sequence[int] = KEEP_EVERY
+
+
+def figure_cells(suite: Suite, course_starts: int) -> dict[str, Cell]:
+    """Return the cells of the suite `thesis` that figures are made of, by name.
+
+    Args:
+        suite: `thesis`, with starts for the basic scenarios.
+        course_starts: number of starts on the long course, whose guide paths take much longer.
+    """
+    return {
+        cell.name: replace(cell, starts=course_starts) if cell.name == COURSE else cell
+        for cell in suite.cells
+        if cell.name in (*BASIC, COURSE) and cell.speed == SPEED
+    }
+
+
 def measure_figures(
     env: SteeringEnv,
     walkers: Mapping[str, Walker],
     suite: Suite,
-    figures: Figures,
-    settings: PlannerSettings,
-    workers: Workers,
-    file: Path,
-    course_starts: int,
-    keep_every: Sequence[int] = KEEP_EVERY,
+    questions: Questions,
+    file: FigureFile,
     say: Callable[[str], None] = lambda text: None,
 ) -> Figures:
     """Fill in what a figure file lacks; it is written after each row, so that work restarts.
 
     Args:
-        env: the task.
+        env: steering task.
         walkers: methods, by name.
-        suite: `thesis`, with starts for the basic scenarios.
-        figures: what is there already.
-        settings: of the planner; every N replaces its `keep_every`.
-        workers: that judge.
-        file: written.
-        course_starts: starts on the long course, whose guide paths take much longer.
-        keep_every: values of N.
-        say: told what is done now.
+        suite: `thesis`, cut down to the cells of `figure_cells`.
+        questions: what the exact planner is asked.
+        file: figure file, with what is there already.
+        say: called with what is done now.
     """
-    wanted = (*BASIC, COURSE)
-    cells = {
-        cell.name: replace(cell, starts=course_starts) if cell.name == COURSE else cell
-        for cell in suite.cells
-        if cell.name in wanted and cell.speed == SPEED
-    }
+    cells = {cell.name: cell for cell in suite.cells}
+    figures, keep_every = file.figures, questions.keep_every
     grounds = make_grounds(list(cells.values()))
     known = {(row.cell, row.method, row.keep_every): row for row in figures.steps}
     total = len(cells) * len(walkers) * len(keep_every)
-    for name in wanted:
+    for name in (*BASIC, COURSE):
         cell = cells[name]
         starts = None
         for method, walks in walkers.items():
@@ -74,16 +97,16 @@ def measure_figures(
                 if (name, method, each) in known:
                     continue
                 say(f"figures {len(known) + 1}/{total}: {method} on {name}, 1 in {each}")
-                chosen = settings.model_copy(update={"keep_every": each})
+                chosen = questions.settings.model_copy(update={"keep_every": each})
                 robot = env.config.robot
-                judge = Judge(figures.planner, chosen, workers=workers, robot=robot)
+                judge = Judge(figures.planner, chosen, workers=questions.workers, robot=robot)
                 judged = ask(cell, walked, judge, env.config.limits.time_step)
                 row = step_row(cell, method, each, judged)
                 known[name, method, each] = row
                 figures = figures.model_copy(update={"steps": tuple(known.values())})
-                if name == COURSE and each == settings.keep_every:
+                if name == COURSE and each == questions.settings.keep_every:
                     figures = _with_course(figures, grounds, cell, method, judged, each)
-                write_figures(file, figures)
+                write_figures(file.path, figures)
     return figures
 
 

@@ -2,14 +2,15 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PlannerName, find_planner
 from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
 from jaxleas.evaluation.examination import POLICY, load_candidate
-from jaxleas.evaluation.figure_file import Figures, read_figures, write_figures
-from jaxleas.evaluation.figures import KEEP_EVERY, measure_figures
+from jaxleas.evaluation.figure_file import FigureFile, Figures, read_figures, write_figures
+from jaxleas.evaluation.figures import KEEP_EVERY, Questions, figure_cells, measure_figures
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
@@ -85,13 +86,9 @@ def figures(
             found = measure_figures(
                 candidate.env,
                 contenders.walkers,
-                suite,
-                found,
-                settings,
-                workers,
-                Path(out),
-                course_starts,
-                tuple(keep_every),
+                replace(suite, cells=tuple(figure_cells(suite, course_starts).values())),
+                Questions(settings, workers, tuple(keep_every)),
+                FigureFile(Path(out), found),
                 reporter.say,
             )
     finally:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.evaluation.table import cell_title, method_title
+from jaxleas.evaluation.titles import cell_title, method_title
 
 
 class Forecast:

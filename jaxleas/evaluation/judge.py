@@ -11,7 +11,7 @@ from jaxleas.evaluation.result_file import AreaResult, CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.rollout import RollOut, roll_out
+from jaxleas.guide.rollout import Trips, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath
 
@@ -51,30 +51,15 @@ class Walk:
 
     def guide_path(self, index: int, time_step: float) -> GuidePath:
         """Return one roll-out up to its end, with `time_step` [s] between configurations."""
-        until = self.end[index] + 1
-        return GuidePath(
-            time=np.arange(until) * time_step,
-            position=self.position[index, :until],
-            yaw=self.yaw[index, :until],
-            velocity=self.velocity[index, :until],
-            valid=self.valid[index, :until],
-        )
+        return GuidePath.of_walk(self, self.valid, index, time_step)[: self.end[index] + 1]
 
 
 def walk(
     env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
 ) -> Walk:
     """Let every start of a cell walk, all at once."""
-    result: RollOut = roll_out(
-        env,
-        grounds.atlas,
-        starts.map_index,
-        method,
-        starts.motion,
-        starts.waypoints,
-        steps,
-        env.config.goal_radius,
-    )
+    trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints)
+    result = roll_out(env, method, trips, steps, env.config.goal_radius)
     return Walk(
         starts=starts,
         position=np.asarray(result.position),

@@ -5,9 +5,8 @@ walks refuses the very guide paths whose last probability lies below it. One jud
 paths therefore tells what every threshold would have done.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -19,8 +18,6 @@ from jaxleas.evaluation.judge import path_lengths
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.atlas import Atlas
-
-DPI = 110
 
 
 @dataclass(frozen=True)
@@ -130,39 +127,3 @@ def as_json(settings: Sequence[Setting]) -> list[dict[str, Any]]:
         }
         for each in settings
     ]
-
-
-def draw_dial(curves: Mapping[str, Sequence[Mapping[str, Any]]], title: str) -> bytes:
-    """Draw exact success against the share attempted, and against speed, as a PNG.
-
-    Args:
-        curves: settings as `as_json` gives them, by the name of what was walked.
-        title: above the picture.
-    """
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    figure = Figure(figsize=(10.4, 4.2), layout="constrained")
-    axes = figure.subplots(1, 3)
-    for name, settings in curves.items():
-        there = [each for each in settings if each["success"] is not None]
-        at = [each["threshold"] for each in there]
-        success = [100.0 * each["success"] for each in there]
-        attempted = [100.0 * each["attempted"] for each in there]
-        (line,) = axes[0].plot(at, success, marker=".", label=name)
-        band = [[100.0 * each[end] for each in there] for end in ("low", "high")]
-        axes[0].fill_between(at, *band, color=line.get_color(), alpha=0.12, linewidth=0)
-        axes[1].plot(attempted, success, marker=".", color=line.get_color())
-        axes[2].plot(
-            [100.0 * each["speed"] for each in there], success, ".-", color=line.get_color()
-        )
-    labels = ("threshold", "starts attempted [%]", "mean speed of the root [cm/s]")
-    for ax, label in zip(axes, labels, strict=True):
-        ax.set(xlabel=label, ylabel="exact success of those attempted [%]")
-        ax.grid(color="0.9", linewidth=0.6)
-        ax.tick_params(labelsize=8)
-        ax.spines[["top", "right"]].set_visible(False)
-    axes[0].legend(frameon=False, fontsize=8, loc="lower right")
-    figure.suptitle(title, fontsize=11)
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()

@@ -59,26 +59,9 @@ def _navigate(
         parts.append(leg.path)
         motion = motion_at(leg.path, len(leg.path) - 1)
         if not leg.reached:
-            return joined(parts), False
-    path = joined(parts)
+            return GuidePath.join(parts), False
+    path = GuidePath.join(parts)
     return path, len(path) - 1 <= steps
-
-
-def joined(parts: Sequence[GuidePath]) -> GuidePath:
-    """Return guide paths as one, each but the first without its first configuration."""
-    kept = [(part, slice(0 if index == 0 else 1, None)) for index, part in enumerate(parts)]
-
-    def rows(name: str) -> np.ndarray:
-        return np.concatenate([getattr(part, name)[some] for part, some in kept])
-
-    gaps = np.concatenate([np.diff(part.time) for part in parts])
-    return GuidePath(
-        time=np.concatenate([[0.0], np.cumsum(gaps)]),
-        position=rows("position"),
-        yaw=rows("yaw"),
-        velocity=rows("velocity"),
-        valid=rows("valid"),
-    )
 
 
 def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts) -> Walk:

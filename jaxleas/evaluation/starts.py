@@ -13,12 +13,12 @@ from jaxtyping import Float, Int
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.suites import Cell
-from jaxleas.terrain.atlas import VOID, Atlas, make_atlas
+from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.terrain.scenarios import Scenario
-from jaxleas.types import RootMotion
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, RootMotion, is_ground
 
 RESOLUTION = 0.04
 """Of the height maps that are judged on [m]: as trained on."""
@@ -106,7 +106,7 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
             grounds.atlas,
             map_index,
             jnp.asarray(horizontal, dtype=jnp.float32),
-            jnp.asarray(_wrap(ahead + aside), dtype=jnp.float32),
+            jnp.asarray(wrap_angle_on_host(ahead + aside), dtype=jnp.float32),
             jnp.float32(cell.speed),
         )
         valid = np.asarray(judged)
@@ -150,10 +150,6 @@ def _centre(area: Sequence[float]) -> Float[np.ndarray, " 2"]:
     return np.array(area, dtype=np.float64).reshape(2, 2).mean(axis=1)
 
 
-def _wrap(angle: Float[np.ndarray, " N"]) -> Float[np.ndarray, " N"]:
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
-
-
 def _waypoints(
     env: SteeringEnv, grounds: Grounds, cell: Cell, rng: np.random.Generator
 ) -> Float[np.ndarray, "scenes W 3"]:
@@ -167,7 +163,7 @@ def _waypoints(
         ground = height_map.height_at(horizontal).astype(np.float64)
         # A goal in the void has no height: ask for that of the start.
         start = height_map.height_at(_centre(scenario.start_areas[0])[None])
-        ground = np.where(np.isnan(ground), start, ground)
+        ground = np.where(is_ground(ground), ground, start)
         points.append(np.column_stack([horizontal, ground + env.robot.walking_height]))
     longest = max(len(each) for each in points)
     # Scenes with fewer waypoints repeat their last: it is reached as soon as it is asked for.
@@ -189,4 +185,4 @@ def _stand(
     ahead = jnp.stack([jnp.cos(yaw), jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1)
     motion = RootMotion(position=position, velocity=speed * ahead, yaw=yaw)
     margin = env.condition(env.local_heights(atlas, map_index, motion), motion)
-    return motion, (margin >= 0.0) & (ground[:, 0] > VOID)
+    return motion, (margin >= 0.0) & is_ground(ground[:, 0])

@@ -18,6 +18,8 @@ MAX_TUNING_SEED = (EVALUATION_SEED - TUNING_SEED) // SCENES_PER_SEED
 MAX_STARTS = STARTS_PER_SCENE * SCENES_PER_SEED
 HELD_OUT_SUFFIX = "_held_out"
 SUITES = tuple(RECIPES)
+SUITED_TASKS = ("steering",)
+"""Tasks whose policies the suites judge."""
 REPORTED = tuple(name for name, recipe in RECIPES.items() if recipe.in_report)
 """Suites that every report has; the others take longer or are asked for by name."""
 

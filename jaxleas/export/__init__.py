@@ -2,7 +2,8 @@
 
 from jaxleas.export.errors import ExportError
 from jaxleas.export.onnx_file import build_onnx
-from jaxleas.export.parity import TOLERANCE, largest_difference, record_observations
+from jaxleas.export.parity import TOLERANCE, largest_difference
+from jaxleas.export.recording import record_observations
 from jaxleas.export.stablehlo import read_stablehlo, to_stablehlo
 from jaxleas.export.write import export_policy
 

@@ -1,5 +1,6 @@
 """The function behind `jaxleas export`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ def export(
     terrain: Path | None = None,
     start: tuple[float, float, float] | None = None,
     runtime: Path | None = None,
+    allow: tuple[str, ...] = (),
 ) -> None:
     """Export the best policy of a run as ONNX and StableHLO, compared with JAX first.
 
@@ -26,45 +28,56 @@ def export(
         terrain: of the page: .npz height map, .json scene, .stl or .obj mesh.
         start: of the page: x, y [m] and heading [deg]; by default a place with room around it.
         runtime: folder dist of the npm package onnxruntime-web; by default npm fetches it once.
+        allow: code of your own that the run's configuration names, each MODULE:CLASS.
     """
     if page is None or terrain is None:
         if page is not None or terrain is not None or start is not None or runtime is not None:
             raise InputError("a page needs both --page DIR and --terrain FILE; nothing was written")
-        _export_run(Path(run), out)
+        _export_run(Path(run), out, allow)
         return
-    from jaxleas.export.web_page import write_page
-    from jaxleas.guide.onnx_policy import read_onnx_policy
+    from jaxleas.envs.registry import DEFAULT_TASK, PAGES
     from jaxleas.terrain.importers import import_terrain
 
-    ground = import_terrain(terrain)
     file = Path(run)
+    task = DEFAULT_TASK if file.suffix == ".onnx" else _task_of(file, allow)
+    if task not in PAGES:
+        raise InputError(
+            f"the task {task} has no page: --page is for {', '.join(PAGES)}; nothing was written"
+        )
+    ground = import_terrain(terrain)
     if file.suffix != ".onnx":
-        file = _export_run(file, out) / "policy.onnx"
-    config = read_onnx_policy(file).config
-    write_page(page, file.read_bytes(), config, ground, start, runtime)
+        file = _export_run(file, out, allow) / "policy.onnx"
+    PAGES.find(task)(page, file, ground, start, runtime)
     print(f"{page}: serve it from anywhere, as with  python -m http.server --directory {page}")
 
 
-def _export_run(folder: Path, out: Path | None) -> Path:
+def _task_of(folder: Path, allow: Sequence[str]) -> str:
+    from jaxleas.runs.folder import policy_file
+    from jaxleas.training.run_config import load_run_config
+
+    policy_file(folder)
+    return load_run_config(folder / "config.yaml", allow=allow).env.task
+
+
+def _export_run(folder: Path, out: Path | None, allow: Sequence[str]) -> Path:
     """Export a run; return the folder of the artifacts."""
     import jax
 
-    from jaxleas.configuration.loading import load_config, to_yaml
-    from jaxleas.envs.steering.env import SteeringEnv
-    from jaxleas.export.parity import record_observations
+    from jaxleas.configuration.loading import to_yaml
+    from jaxleas.export.recording import record_observations
     from jaxleas.export.write import export_policy
-    from jaxleas.guide.loading import policy_file
-    from jaxleas.training.config import RunConfig
+    from jaxleas.runs.folder import policy_file
     from jaxleas.training.policy import read_policy
+    from jaxleas.training.run_config import load_run_config, make_task
     from jaxleas.training.worlds import held_out_world
 
     if folder.is_file():
         raise InputError(f"{folder} is a file; the run folder, as train.py writes it, would do")
-    policy = read_policy(policy_file(folder))
-    config = load_config(RunConfig, folder / "config.yaml")
-    env = SteeringEnv(policy.config)
+    policy = read_policy(policy_file(folder), allow)
+    config = load_run_config(folder / "config.yaml", allow=allow)
+    task = make_task(config, allow)
     observations = record_observations(
-        policy, env, held_out_world(config), jax.random.key(RECORDING_KEY)
+        policy, task, held_out_world(config, task), jax.random.key(RECORDING_KEY)
     )
     target = folder if out is None else Path(out)
     record = export_policy(policy, target, observations, to_yaml(config), success_of(folder))

@@ -1,99 +1,26 @@
 """Do the artifacts compute what the policy computes? Asked on what a robot really sees."""
 
 from collections.abc import Callable
-from functools import partial
+from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
-from jax import Array
-from jaxtyping import Float, Int, Key
+from jaxtyping import Float
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.starts import draw_starts, take
-from jaxleas.envs.steering.world import World
 from jaxleas.export.errors import ExportError
+from jaxleas.export.recording import LEAST_OBSERVATIONS
 from jaxleas.export.stablehlo import stablehlo_from_bytes
-from jaxleas.guide.leas import Leas
-from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.guide.rollout import roll_out
-from jaxleas.training.policy import SteeringPolicy
-from jaxleas.types import RootMotion
+from jaxleas.training.policy import Policy
 
-TOLERANCE = 1e-5  # [m/s^2] and [rad/s]
-LEAST_OBSERVATIONS = 10_000
-
-
-def record_observations(
-    policy: SteeringPolicy,
-    env: SteeringEnv,
-    world: World,
-    key: Key[Array, ""],
-    robots: int = 128,
-    steps: int = 200,
-) -> Float[np.ndarray, "count size"]:
-    """Return 10,000 or more observations of the policy's own walks, and edge cases after them.
-
-    Robots walk across random links, each to its end or for `steps` steps, in as many rounds as it
-    takes (a policy that falls at once needs more of them).
-
-    Args:
-        policy: that walks.
-        env: that observes.
-        world: terrains and links.
-        key: consumed here.
-        robots: that walk at once.
-        steps: most steps of each.
-    """
-    recorded: list[np.ndarray] = []
-    while sum(map(len, recorded)) < LEAST_OBSERVATIONS:
-        key, round_key = jax.random.split(key)
-        seen, end = _record_round(policy, env, world, round_key, robots, steps)
-        walking = np.arange(steps + 1)[None, :] <= np.asarray(end)[:, None]
-        recorded.append(np.asarray(seen)[walking])
-    return np.concatenate([*recorded, edge_cases(policy)])
-
-
-@partial(jax.jit, static_argnames=("env", "robots", "steps"))
-def _record_round(
-    policy: SteeringPolicy, env: SteeringEnv, world: World, key: Array, robots: int, steps: int
-) -> tuple[Float[Array, "robots T+1 size"], Int[Array, " robots"]]:
-    """Return what every robot sees in all configurations, and the index of its last one."""
-    pool_key, take_key = jax.random.split(key)
-    episode, _ = take(draw_starts(env, world, pool_key, 4 * robots), take_key, robots)
-    map_index, goal = episode.plan.map_index, episode.plan.goals[:, :1]
-    waypoints = jnp.pad(goal, ((0, 0), (0, 0), (0, 1)))  # LEAS does not look at a goal's height
-    walked = roll_out(
-        env, world.atlas, map_index, Leas(policy, env), episode.motion, waypoints, steps
-    )
-    motion = RootMotion(position=walked.position, velocity=walked.velocity, yaw=walked.yaw)
-    heights = env.local_heights(
-        world.atlas, jnp.broadcast_to(map_index[:, None], walked.yaw.shape), motion
-    )
-    goal = jnp.broadcast_to(goal, (*walked.yaw.shape, 2))
-    return env.observe(heights, motion, goal), walked.end
-
-
-def edge_cases(policy: SteeringPolicy) -> Float[np.ndarray, "cases size"]:
-    """Return observations at the ends of their ranges, and one value at a time far beyond."""
-    mean, deviation = np.asarray(policy.mean), np.asarray(policy.deviation)
-    levels = (-1.0, -1e-6, 0.0, 1e-6, 1.0)
-    whole = [mean + level * deviation for level in levels]
-    # The clip must catch these. Not all values at once: no terrain does that, and float32 sums of
-    # a hundred large terms differ by more than the tolerance without anything being wrong.
-    single = [
-        mean + level * deviation * np.eye(len(mean))[index]
-        for level in (-1e6, -1.0, 1.0, 1e6)
-        for index in range(len(mean))
-    ]
-    return np.array([*whole, *single], dtype=np.float32)
+TOLERANCE = 1e-5  # of each number of a command, in its unit and relative to its range beyond 1
+_MOST_TIES = 1e-3  # share of choices that may differ: where two are equally likely to the last bit
 
 
 def largest_difference(
-    policy: SteeringPolicy,
+    policy: Policy,
     onnx_file: bytes,
     stablehlo: bytes,
-    observations: Float[np.ndarray, "count size"],
+    observations: Float[np.ndarray, "count seen"],
 ) -> dict[str, float]:
     """Return how far the artifacts are from JAX on these observations.
 
@@ -104,7 +31,8 @@ def largest_difference(
         observations: at least 10,000, in physical units.
 
     Returns:
-        The largest absolute difference of each, [m/s^2] or [rad/s].
+        The largest absolute difference of each, in the commands' units; of choices the share that
+        differs.
 
     Raises:
         ExportError: there are too few observations, or a difference is above `TOLERANCE`.
@@ -115,15 +43,17 @@ def largest_difference(
             f"the artifacts must be compared on at least {LEAST_OBSERVATIONS} observations, not"
             f" on {len(observations)}; nothing was written"
         )
+    shown = _by_part(policy, observations)
     with jax.default_matmul_precision("highest"):  # as the artifacts compute, on any device
-        expected = np.asarray(jax.jit(policy.__call__)(observations))
-    artifacts: dict[str, Callable] = {
-        "onnxruntime": onnx_policy_from_bytes(onnx_file, "policy.onnx"),
-        "stablehlo": stablehlo_from_bytes(stablehlo),
+        expected = _by_head(policy, jax.jit(policy.__call__)(_given(shown)))
+    artifacts: dict[str, Callable[[dict[str, np.ndarray]], Any]] = {
+        "onnxruntime": lambda shown: _run_onnx(onnx_file, policy, shown),
+        "stablehlo": lambda shown: stablehlo_from_bytes(stablehlo)(_given(shown)),
     }
     differences = {}
     for name, artifact in artifacts.items():
-        gap = float(np.max(np.abs(np.asarray(artifact(observations)) - expected)))
+        found = _by_head(policy, artifact(shown))
+        gap = max(_gap(found[head], expected[head]) for head in expected)
         if not gap <= TOLERANCE:  # a NaN is a difference too
             raise ExportError(
                 f"{name} and JAX differ by {gap:.3g} on {len(observations)} recorded observations,"
@@ -131,3 +61,40 @@ def largest_difference(
             )
         differences[name] = gap
     return differences
+
+
+def _gap(found: np.ndarray, expected: np.ndarray) -> float:
+    if expected.dtype.kind == "i":
+        share = float(np.mean(found != expected))
+        return 0.0 if share <= _MOST_TIES else share
+    scale = max(1.0, float(np.max(np.abs(expected), initial=0.0)))
+    return float(np.max(np.abs(found - expected))) / scale
+
+
+def _by_part(policy: Policy, observations: np.ndarray) -> dict[str, np.ndarray]:
+    ends = np.cumsum([part.size for part in policy.signature.seen])
+    return {
+        part.name: observations[:, end - part.size : end].reshape(-1, *part.shape)
+        for part, end in zip(policy.signature.seen, ends, strict=True)
+    }
+
+
+def _given(shown: dict[str, np.ndarray]) -> Any:
+    return next(iter(shown.values())) if len(shown) == 1 else shown
+
+
+def _by_head(policy: Policy, command: Any) -> dict[str, np.ndarray]:
+    heads = policy.signature.heads
+    if not isinstance(command, dict):
+        command = {heads[0].name: command}
+    return {head.name: np.asarray(command[head.name]) for head in heads}
+
+
+def _run_onnx(content: bytes, policy: Policy, shown: dict[str, np.ndarray]) -> dict[str, Any]:
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    session = onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    names = [head.name for head in policy.signature.heads]
+    return dict(zip(names, session.run(names, shown), strict=True))

@@ -2,36 +2,39 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jax import Array
 from jax import export as jax_export
 
-from jaxleas.envs.steering.layout import layout_named
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import InputError
 
 PLATFORMS = ("cpu", "cuda", "tpu")
 
 
-def to_stablehlo(policy: SteeringPolicy) -> bytes:
+def to_stablehlo(policy: Policy) -> bytes:
     """Return a policy, weights inside, as serialised StableHLO with a symbolic batch.
 
     Args:
-        policy: to be exported; `observation` [batch, size] to `command` [batch, 4], float32.
+        policy: to be exported; parts of the observation [batch, *shape], float32, to heads of the
+            action, in physical units: each by name, or the only one alone.
     """
-    size = layout_named(policy.config.observation).size
     (batch,) = jax_export.symbolic_shape("batch")
-    observation = jax.ShapeDtypeStruct((batch, size), jnp.float32)
+    shown = {
+        part.name: jax.ShapeDtypeStruct((batch, *part.shape), jnp.float32)
+        for part in policy.signature.seen
+    }
+    observation = next(iter(shown.values())) if len(shown) == 1 else shown
     # The default lets accelerators round products to ten bits: no artifact to compare with others.
     with jax.default_matmul_precision("highest"):
         exported = jax_export.export(jax.jit(policy.__call__), platforms=PLATFORMS)(observation)
     return bytes(exported.serialize())
 
 
-def read_stablehlo(path: str | Path) -> Callable[[Array], Array]:
-    """Return the policy in a .stablehlo file: observation [batch, size] to command [batch, 4].
+def read_stablehlo(path: str | Path) -> Callable[[Any], Any]:
+    """Return the policy in a .stablehlo file: observation to command, as `to_stablehlo` says.
 
     Raises:
         InputError: the file is missing or not a serialised export.
@@ -44,6 +47,6 @@ def read_stablehlo(path: str | Path) -> Callable[[Array], Array]:
         raise InputError(f"{path} is not a StableHLO policy: {error}") from error
 
 
-def stablehlo_from_bytes(content: bytes) -> Callable[[Array], Array]:
+def stablehlo_from_bytes(content: bytes) -> Callable[[Any], Any]:
     """Return the function that `to_stablehlo` serialised."""
     return jax_export.deserialize(bytearray(content)).call

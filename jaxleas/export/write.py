@@ -10,22 +10,18 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.envs.environment import TaskConfig
 from jaxleas.export.onnx_file import OPSET, build_onnx
 from jaxleas.export.parity import TOLERANCE, largest_difference
 from jaxleas.export.stablehlo import PLATFORMS, to_stablehlo
 from jaxleas.files import write_bytes, write_json
-from jaxleas.guide.onnx_metadata import describe
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 
-SOURCE = (
-    "LEAS steering policy: J. Chemin, thesis NNT 2022ISAT0046, chapter 3;"
-    " Chemin et al., Learning to steer a locomotion contact planner, ICRA 2021"
-)
 VERSION = 1  # of export.json
 
 
 def export_policy(
-    policy: SteeringPolicy,
+    policy: Policy,
     out: str | Path,
     observations: Float[np.ndarray, "count size"],
     config_text: str = "",
@@ -48,11 +44,10 @@ def export_policy(
         InputError: the folder cannot be written.
     """
     metadata = {
-        **describe(policy.config),
+        **described(policy.config),
         "jaxleas": json.dumps(version("jaxleas")),
         "training_config": json.dumps(config_text),
         "success": json.dumps(success_table, allow_nan=False),
-        "source": json.dumps(SOURCE),
     }
     stablehlo = to_stablehlo(policy)
     differences = largest_difference(policy, build_onnx(policy, metadata), stablehlo, observations)
@@ -71,6 +66,11 @@ def export_policy(
     write_bytes(out / "policy.stablehlo", stablehlo)
     write_json(out / "export.json", record)  # last: its hashes vouch for the other two
     return record
+
+
+def described(config: TaskConfig) -> dict[str, str]:
+    """Return what an exported policy of a task says about itself, each value a JSON text."""
+    return {key: json.dumps(value) for key, value in config.describe().items()}
 
 
 def _file(content: bytes, facts: Mapping[str, Any]) -> dict[str, Any]:

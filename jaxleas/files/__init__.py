@@ -10,7 +10,8 @@ from jaxleas.files.atomic import (
 )
 from jaxleas.files.json_text import parse_json
 from jaxleas.files.keys import refuse_misspelt_keys
-from jaxleas.files.lock import FolderLock
+from jaxleas.files.lock import FolderLock, InUseError
+from jaxleas.files.lock_holder import is_held
 from jaxleas.files.reading import (
     is_file,
     read_bytes,
@@ -23,8 +24,10 @@ from jaxleas.files.typed import read_typed, typed
 
 __all__ = [
     "FolderLock",
+    "InUseError",
     "atomic_path",
     "is_file",
+    "is_held",
     "parse_json",
     "read_bytes",
     "read_json",

@@ -1,24 +1,26 @@
 """A folder held by one writer at a time, also among machines that share it."""
 
 import fcntl
-import json
 import logging
 import os
-import socket
 import threading
-from dataclasses import dataclass
+import time
 from pathlib import Path
-from tempfile import TemporaryFile
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
+from jaxleas.files.lock_holder import LOCK, SILENCE, Holder, silence_of
 from jaxleas.types.errors import InputError
 
 PULSE = 10.0
 """The holder touches its lock this often [s]."""
-SILENCE = 60.0
-"""A holder on another machine that has not touched its lock for so long is dead [s]."""
+PATIENCE = 0.2
+"""A lock may be held that long by one that only asks who holds it [s]."""
 _LOG = logging.getLogger("jaxleas")
+
+
+class InUseError(InputError):
+    """A folder that another process holds; it may let go of it."""
 
 
 class FolderLock:
@@ -35,14 +37,15 @@ class FolderLock:
         remedy: what else one could do, as "name another --run-dir".
 
     Raises:
-        InputError: somebody else holds it, or it cannot be locked.
+        InUseError: another process holds it.
+        InputError: it cannot be locked.
     """
 
     def __init__(self, folder: str | Path, what: str, remedy: str) -> None:
         self._name = f"{what} {folder}"
         self._remedy = remedy
         self._over = threading.Event()
-        self._descriptor: int | None = _open(Path(folder) / "lock", self._name)
+        self._descriptor: int | None = _open(Path(folder) / LOCK, self._name)
         try:
             self._take(Path(folder))
         except BaseException:
@@ -73,28 +76,28 @@ class FolderLock:
         descriptor = self._descriptor
         assert descriptor is not None
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(descriptor)
         except BlockingIOError as error:
-            raise InputError(
-                f"{self._name} is in use by {_Holder.of(descriptor)}; wait for it, stop it, or"
+            raise InUseError(
+                f"{self._name} is in use by {Holder.of(descriptor)}; wait for it, stop it, or"
                 f" {self._remedy}"
             ) from error
         except OSError as error:
             raise InputError(f"cannot lock {self._name}: {error.strerror}") from error
-        before = _Holder.of(descriptor)
-        if before.host not in ("", socket.gethostname()):
-            self._require_silence(before, _age(descriptor, folder))
+        before = Holder.of(descriptor)
+        if before.is_elsewhere:
+            self._require_silence(before, silence_of(descriptor, folder))
         try:
             os.ftruncate(descriptor, 0)
-            os.pwrite(descriptor, _Holder(os.getpid(), socket.gethostname()).text().encode(), 0)
+            os.pwrite(descriptor, Holder.here().text().encode(), 0)
         except OSError as error:
             raise InputError(f"cannot lock {self._name}: {error.strerror}") from error
         if before.process:
             _LOG.warning("%s was left behind by %s, which did not close it", self._name, before)
 
-    def _require_silence(self, before: "_Holder", age: float) -> None:
+    def _require_silence(self, before: Holder, age: float) -> None:
         if age < SILENCE:
-            raise InputError(
+            raise InUseError(
                 f"{self._name} is in use by {before}, which showed a sign of life {age:.0f} s ago;"
                 f" if it is dead, try again in {SILENCE - age:.0f} s, or {self._remedy}"
             )
@@ -108,32 +111,6 @@ class FolderLock:
                 continue
 
 
-@dataclass(frozen=True)
-class _Holder:
-    """Who holds a lock, as written into it; 0 and "" where nobody does."""
-
-    process: int
-    host: str
-
-    @classmethod
-    def of(cls, descriptor: int) -> "_Holder":
-        try:
-            said: Any = json.loads(os.pread(descriptor, 1024, 0).decode(errors="replace"))
-        except ValueError:  # nobody, or cut short by a full disk
-            return cls(0, "")
-        if isinstance(said, int):  # as versions before 0.2 wrote it
-            return cls(said, "")
-        known = isinstance(said, dict) and isinstance(said.get("process"), int)
-        return cls(said["process"], str(said.get("host", ""))) if known else cls(0, "")
-
-    def text(self) -> str:
-        return json.dumps({"process": self.process, "host": self.host}) + "\n"
-
-    def __str__(self) -> str:
-        where = f" on {self.host}" if self.host not in ("", socket.gethostname()) else ""
-        return f"process {self.process or 'unknown'}{where}"
-
-
 def _open(path: Path, name: str) -> int:
     try:
         return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
@@ -141,10 +118,13 @@ def _open(path: Path, name: str) -> int:
         raise InputError(f"cannot lock {name}: {error.strerror}") from error
 
 
-def _age(descriptor: int, folder: Path) -> float:
-    """Return for how long a lock was not touched, by the clock of the file system's host [s]."""
-    try:
-        with TemporaryFile(dir=folder) as now:
-            return os.fstat(now.fileno()).st_mtime - os.fstat(descriptor).st_mtime
-    except OSError:
-        return 0.0
+def _lock(descriptor: int) -> None:
+    """Take a lock; wait a moment for one that is held only to ask who holds it (`is_held`)."""
+    until = time.monotonic() + PATIENCE
+    while True:
+        try:
+            return fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > until:
+                raise
+        time.sleep(0.01)

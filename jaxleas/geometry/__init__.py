@@ -10,6 +10,7 @@ from jaxleas.geometry.rotations import (
     rotate_to_world,
     squared_length,
     wrap_angle,
+    wrap_angle_on_host,
 )
 from jaxleas.xla.angles import bearing, sine_cosine
 
@@ -26,4 +27,5 @@ __all__ = [
     "sine_cosine",
     "squared_length",
     "wrap_angle",
+    "wrap_angle_on_host",
 ]

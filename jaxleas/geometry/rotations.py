@@ -3,6 +3,7 @@
 from functools import reduce
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 from jaxtyping import Float
 
@@ -68,3 +69,16 @@ def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     wrapped = angle - 2 * jnp.pi * jnp.floor((angle + jnp.pi) / (2 * jnp.pi))
     # Rounding may leave it just outside, on either side.
     return jnp.where(wrapped >= jnp.pi, -jnp.pi, jnp.maximum(wrapped, -jnp.pi))
+
+
+def bound_norm(vector: Float[Array, "*batch D"], limit: float) -> Float[Array, "*batch D"]:
+    """Shorten vectors that are longer than `limit`; leave the others alone."""
+    square = squared_length(vector)[..., None]
+    # rsqrt of at least limit^2: no division by zero, no branch, finite derivatives at zero.
+    return vector * (limit / jnp.sqrt(jnp.maximum(square, limit * limit)))
+
+
+def wrap_angle_on_host(angle: Float[np.ndarray, "*batch"] | float) -> Float[np.ndarray, "*batch"]:
+    """Bring an angle [rad] into [-pi, pi), as `wrap_angle` does, in NumPy and double precision."""
+    wrapped = (np.asarray(angle, np.float64) + np.pi) % (2.0 * np.pi) - np.pi
+    return np.where(wrapped >= np.pi, -np.pi, wrapped)  # rounding may leave it just outside

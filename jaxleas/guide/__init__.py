@@ -12,7 +12,7 @@ from jaxleas.guide.loading import load_policy
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
 from jaxleas.guide.rb_kino import RbKino, rb_kino
 from jaxleas.guide.rb_lin import RbLin, rb_lin
-from jaxleas.guide.rollout import RollOut, paths, roll_out
+from jaxleas.guide.rollout import RollOut, Trips, paths, roll_out
 from jaxleas.guide.steering_method import HostSteeringMethod, SteeringMethod
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "RbLin",
     "RollOut",
     "SteeringMethod",
+    "Trips",
     "leas",
     "load_policy",
     "paths",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.types import InputError
+from jaxleas.types import InputError, is_ground
 
 if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
     from jaxleas.terrain.height_map import HeightMap
-    from jaxleas.training.policy import SteeringPolicy
+    from jaxleas.training.policy import Policy
     from jaxleas.types import Query
 
 Steering = Literal["leas", "kino", "lin"]
@@ -98,7 +98,7 @@ def rollout(
 
 
 def steering_named(
-    steering: Steering, env: "SteeringEnv", policy: "SteeringPolicy | OnnxPolicy | None"
+    steering: Steering, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
 ) -> "SteeringMethod":
     """Return the steering method of that name, as fast as its task says; LEAS needs a policy."""
     from jaxleas.guide.leas import leas
@@ -122,7 +122,8 @@ def walk_queries(
     """Return the roll-out of queries on one height map."""
     import jax.numpy as jnp
 
-    from jaxleas.guide.rollout import roll_out
+    from jaxleas.geometry.rotations import wrap_angle_on_host
+    from jaxleas.guide.rollout import Trips, roll_out
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.types import RootMotion
 
@@ -130,23 +131,20 @@ def walk_queries(
     start = RootMotion(
         position=jnp.asarray([query.position for query in queries], jnp.float32),
         velocity=jnp.asarray([query.velocity for query in queries], jnp.float32),
-        yaw=jnp.asarray((yaw + np.pi) % (2 * np.pi) - np.pi, jnp.float32),
+        yaw=jnp.asarray(wrap_angle_on_host(yaw), jnp.float32),
     )
     # The height wanted at the goal: walking height; over the void, that of the start.
     goals = np.array([query.goal for query in queries])
     height = terrain.height_at(goals) + env.robot.walking_height
-    height = np.where(np.isnan(height), [query.position[2] for query in queries], height)
+    height = np.where(is_ground(height), height, [query.position[2] for query in queries])
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
-    return roll_out(
-        env,
+    trips = Trips(
         make_atlas([terrain]),
         jnp.zeros(len(queries), jnp.int32),
-        method,
         start,
         jnp.asarray(waypoints, jnp.float32),
-        steps,
-        env.config.goal_radius,
     )
+    return roll_out(env, method, trips, steps, env.config.goal_radius)
 
 
 def reasons_of(rollout: "RollOut") -> "list[Reason]":

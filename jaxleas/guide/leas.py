@@ -8,7 +8,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.motion import integrate
 from jaxleas.guide.onnx_policy import OnnxLeas, OnnxPolicy
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import InputError, RootMotion
 
 
@@ -21,7 +21,7 @@ class Leas:
         env: that observes.
     """
 
-    policy: SteeringPolicy
+    policy: Policy
     env: SteeringEnv = struct.field(pytree_node=False)
 
     def __call__(
@@ -35,7 +35,7 @@ class Leas:
         return integrate(motion, self.policy(observation), self.env.config.limits)
 
 
-def leas(env: SteeringEnv, policy: SteeringPolicy | OnnxPolicy) -> SteeringMethod:
+def leas(env: SteeringEnv, policy: Policy | OnnxPolicy) -> SteeringMethod:
     """Return a policy as a steering method.
 
     Args:

@@ -1,13 +1,15 @@
-"""Find the policy a person means: a run folder, a policy.npz, or an ONNX file."""
+"""Find the steering policy a person means: a run folder, a policy.npz, or an ONNX file."""
 
 from pathlib import Path
 
+from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
-from jaxleas.training.policy import SteeringPolicy, read_policy
+from jaxleas.runs.folder import policy_file
+from jaxleas.training.policy import Policy, read_policy
 from jaxleas.types import InputError
 
 
-def load_policy(path: str | Path) -> SteeringPolicy | OnnxPolicy:
+def load_policy(path: str | Path) -> Policy | OnnxPolicy:
     """Return the policy at `path`; its `config` says what environment it was trained in.
 
     Args:
@@ -18,28 +20,11 @@ def load_policy(path: str | Path) -> SteeringPolicy | OnnxPolicy:
     """
     path = Path(path)
     if path.is_dir():
-        return read_policy(policy_file(path))
+        return read_policy(policy_file(path), of=SteeringConfig)
     if path.suffix == ".npz":
-        return read_policy(path)
+        return read_policy(path, of=SteeringConfig)
     if path.suffix == ".onnx":
         return read_onnx_policy(path)
     if not path.exists():
         raise InputError(f"{path} does not exist; a run folder, a policy.npz or an .onnx would do")
     raise InputError(f"{path} is not a policy: a run folder, a policy.npz or an .onnx would do")
-
-
-def policy_file(run: str | Path) -> Path:
-    """Return the file of a run's best policy.
-
-    Raises:
-        InputError: the folder is missing, no run folder, half-written, or of another version.
-    """
-    from jaxleas.runs.folder import RunFolder
-
-    folder = RunFolder.open(run, needs_checkpoint=False)
-    file = folder.path / "policy.npz"
-    if not file.is_file():
-        raise InputError(
-            f"the run folder {run} holds no policy.npz yet; go on with train.py --resume {run}"
-        )
-    return file

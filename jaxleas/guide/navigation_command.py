@@ -155,7 +155,7 @@ def start_motion(
     Raises:
         InputError: it cannot stand there.
     """
-    from jaxleas.guide.roadmaps.places import HEADINGS
+    from jaxleas.guide.places import HEADINGS
 
     if yaw is None:
         facing = math.atan2(goal[1] - start[1], goal[0] - start[0])

@@ -24,7 +24,7 @@ OPSETS = range(13, 24)  # of the operators a policy consists of, as onnxruntime 
 
 @dataclass(frozen=True)
 class OnnxPolicy:
-    """Observation in physical units to command in physical units, as `SteeringPolicy` has it.
+    """Observation in physical units to command in physical units, as `Policy` has it.
 
     Attributes:
         config: of the environment it was trained in, from the file's metadata.

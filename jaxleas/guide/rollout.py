@@ -13,7 +13,25 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.terrain.atlas import Atlas
-from jaxleas.types import GuidePath, InputError, RootMotion
+from jaxleas.types import GuidePath, InputError, RootMotion, cut_walks
+
+
+@struct.dataclass
+class Trips:
+    """N robots: where they begin and where they are sent.
+
+    Attributes:
+        atlas: terrains.
+        map_index: terrain of each robot.
+        start: root motion of each robot at its start.
+        waypoints: points to reach one after another, the goal last [m]: x, y in the world, and the
+            root's height wanted there.
+    """
+
+    atlas: Atlas
+    map_index: Int[Array, " N"]
+    start: RootMotion
+    waypoints: Float[Array, "N W 3"]
 
 
 @struct.dataclass
@@ -41,6 +59,11 @@ class RollOut:
     reached: Bool[Array, " N"]
     invalid: Bool[Array, " N"]
     refused: Bool[Array, " N"]
+
+    @property
+    def motion(self) -> RootMotion:
+        """The root motions, [N, T+1]."""
+        return RootMotion(self.position, self.velocity, self.yaw)
 
     @property
     def stopped(self) -> Bool[Array, " N"]:
@@ -169,14 +192,7 @@ class _Course:
 
 
 def roll_out(
-    env: SteeringEnv,
-    atlas: Atlas,
-    map_index: Int[Array, " N"],
-    method: SteeringMethod,
-    start: RootMotion,
-    waypoints: Float[Array, "N W 3"],
-    steps: int,
-    radius: float = 0.2,
+    env: SteeringEnv, method: SteeringMethod, trips: Trips, steps: int, radius: float = 0.2
 ) -> RollOut:
     """Walk N robots with a steering method until each has arrived, failed, or used up its time.
 
@@ -187,28 +203,24 @@ def roll_out(
     environment, kind of method and shapes.
 
     Args:
-        env: that observes, and whose condition judges each configuration.
-        atlas: terrains.
-        map_index: terrain of each robot.
+        env: steering task: it observes, and its condition judges each configuration.
         method: steering method; one that `runs_on_host` is driven from a Python loop.
-        start: root motion of each robot.
-        waypoints: in the world [m]: x, y, and the root's height wanted there.
-        steps: most time steps a walk may take.
-        radius: within which a waypoint is reached [m] (T sec. 3.4.2).
+        trips: starts and waypoints of the robots.
+        steps: most time steps that a walk may take.
+        radius: distance within which a waypoint is reached [m] (T sec. 3.4.2).
 
     Raises:
-        InputError: there is nobody to walk, no waypoint, or no step.
+        InputError: there is no robot to walk, no waypoint, or no step.
     """
-    waypoints = jnp.asarray(waypoints, jnp.float32)
+    waypoints = jnp.asarray(trips.waypoints, jnp.float32)
     if steps < 1 or waypoints.ndim != 3 or 0 in waypoints.shape or waypoints.shape[-1] != 3:
         raise InputError(
             f"a roll-out needs robots, waypoints [robots, waypoints, 3] and steps: got waypoints"
             f" of shape {waypoints.shape} and {steps} steps"
         )
-    course = _Course(
-        atlas, jnp.asarray(map_index, jnp.int32), waypoints, jnp.float32(radius), env, steps
-    )
-    start = jax.tree.map(lambda leaf: jnp.asarray(leaf, jnp.float32), start)
+    map_index = jnp.asarray(trips.map_index, jnp.int32)
+    course = _Course(trips.atlas, map_index, waypoints, jnp.float32(radius), env, steps)
+    start = jax.tree.map(lambda leaf: jnp.asarray(leaf, jnp.float32), trips.start)
     if getattr(method, "runs_on_host", False):
         return _walk_on_host(course, method, start)
     if jax.tree_util.treedef_is_leaf(jax.tree.structure(method)):
@@ -247,16 +259,7 @@ def paths(rollout: RollOut, time_step: float) -> list[GuidePath]:
         time_step: between two configurations [s].
     """
     host = jax.tree.map(np.asarray, rollout)
-    return [
-        GuidePath(
-            time=np.arange(end + 1) * time_step,
-            position=host.position[robot, : end + 1],
-            yaw=host.yaw[robot, : end + 1],
-            velocity=host.velocity[robot, : end + 1],
-            valid=host.valid[robot, : end + 1],
-        )
-        for robot, end in enumerate(host.end)
-    ]
+    return cut_walks(host, host.valid, host.end + 1, time_step)
 
 
 def _like(flag: Array, leaf: Array) -> Array:

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jaxleas.evaluation.table import align, percent
 from jaxleas.records.record import RunRecord
+from jaxleas.reports import align, percent
 
 HEADINGS = (
     "run",

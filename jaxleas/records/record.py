@@ -1,19 +1,20 @@
 """One run as its folder tells it, however far it came and whatever became of it."""
 
-import fcntl
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from jaxleas.configuration.former import with_present_names
 from jaxleas.configuration.yaml_text import read_mapping
+from jaxleas.envs.registry import DEFAULT_TASK, TASKS
 from jaxleas.evaluation.examination import BASELINES
 from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
-from jaxleas.files import read_json
+from jaxleas.files import is_held, read_json
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import run_config_of
 from jaxleas.types.errors import InputError
 
 State = Literal["finished", "running", "interrupted", "damaged"]
@@ -73,7 +74,7 @@ class RunRecord:
     @property
     def differences(self) -> dict[str, Any]:
         """What its configuration states that is not the default."""
-        usual = defaults()
+        usual = defaults(self.config.get("env.task", DEFAULT_TASK))
         return {key: value for key, value in self.config.items() if usual.get(key) != value}
 
     def cells(self, suite: str) -> list[CellResult]:
@@ -98,7 +99,7 @@ def read_record(path: str | Path) -> RunRecord:
     done = found.get("steps", 0) >= (found.get("total") or float("inf"))
     finished = done and (path / "policy.npz").is_file()
     # Asked only of those that may be at work: asking holds the lock for a moment.
-    state: State = "finished" if finished else "running" if _is_held(path) else "interrupted"
+    state: State = "finished" if finished else "running" if is_held(path) else "interrupted"
     if problems and state != "running":  # one that begins just now is not whole yet
         state = "damaged"
     return RunRecord(path, state, problem=problems[0] if problems else "", **found)
@@ -115,16 +116,28 @@ def flat(value: Any, prefix: str = "") -> dict[str, Any]:
     }
 
 
-def defaults() -> dict[str, Any]:
-    """Return the default configuration, flat."""
-    return flat(RunConfig().model_dump(mode="json"))
+def defaults(task: str = DEFAULT_TASK) -> dict[str, Any]:
+    """Return the default configuration of a task, flat.
+
+    Of a task of somebody's own, whose code a list of runs does not run, the sections that every
+    run has.
+    """
+    if task in TASKS:
+        return flat(run_config_of(task)().model_dump(mode="json"))
+    common = RunConfig.model_fields.keys() - {"env", "terrain"}
+    whole = run_config_of(DEFAULT_TASK)().model_dump(mode="json", include=common)
+    return flat(whole) | {"env.task": task}
 
 
 def _config(path: Path) -> dict[str, Any]:
     if not (path / "config.yaml").is_file():
         raise InputError(f"{path} is half-written: it holds no config.yaml")
     # As it is, not validated: a run of another version is still a run.
-    usual, stated = defaults(), flat(_plain(read_mapping(path / "config.yaml")))
+    plain = _plain(read_mapping(path / "config.yaml"))
+    task = plain["env"].get("task") if isinstance(plain.get("env"), dict) else None
+    usual = defaults(str(task or DEFAULT_TASK))
+    model = run_config_of(DEFAULT_TASK)
+    stated = flat(with_present_names(model, plain, str(path / "config.yaml")))
     if crushed := next((key for key in stated if any(k.startswith(f"{key}.") for k in usual)), ""):
         raise InputError(f"{path / 'config.yaml'}: {crushed} should hold `key: value` pairs")
     config = usual | stated
@@ -179,20 +192,3 @@ def _evaluations(path: Path) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     """Return YAML values as JSON has them: a date, say, becomes text."""
     return json.loads(json.dumps(value, default=str))
-
-
-def _is_held(path: Path) -> bool:
-    """Whether a process holds the folder for writing."""
-    try:
-        descriptor = os.open(path / "lock", os.O_RDONLY)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:  # a file system without locks
-        return False
-    finally:
-        os.close(descriptor)
-    return False

@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jaxleas.evaluation.learning_curves import COLOURS, DPI, series
-from jaxleas.evaluation.page import page_template
-from jaxleas.evaluation.table import align, cell_title, percent
+from jaxleas.evaluation.titles import cell_title
 from jaxleas.records.comparison import Comparison, Score, apart
 from jaxleas.records.listing import as_json, as_text, cut, duration
 from jaxleas.records.record import HELD_OUT, SUITE
+from jaxleas.reports import align, page_template, percent
+from jaxleas.reports.learning_curves import COLOURS, DPI, series
 
 TEMPLATE = "comparison.html"
 WIDEST = 44

@@ -131,6 +131,21 @@ class RunFolder:
         write_json(self.path / "provenance.json", {"format": FORMAT, **provenance})
 
 
+def policy_file(run: str | Path) -> Path:
+    """Return the file of a run's best policy.
+
+    Raises:
+        InputError: the folder is missing, no run folder, half-written, or of another version.
+    """
+    folder = RunFolder.open(run, needs_checkpoint=False)
+    file = folder.path / "policy.npz"
+    if not file.is_file():
+        raise InputError(
+            f"the run folder {run} holds no policy.npz yet; resume it with train.py --resume {run}"
+        )
+    return file
+
+
 def _take_lock(path: Path) -> FolderLock:
     return FolderLock(path, "the run folder", "name another --run-dir")
 

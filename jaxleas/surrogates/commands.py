@@ -4,7 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from jaxleas.surrogates.settings import FitSettings
 from jaxleas.types.errors import InputError
+
+USUAL = FitSettings()
 
 
 def fit(
@@ -14,10 +17,10 @@ def fit(
     planner: str | None = None,
     policy: Path | None = None,
     where: Sequence[Path] = (),
-    epochs: int = 12,
-    code: int = 48,
-    hidden: int = 32,
-    seed: int = 0,
+    epochs: int = USUAL.epochs,
+    code: int = USUAL.code,
+    hidden: int = USUAL.hidden,
+    seed: int = USUAL.seed,
 ) -> None:
     """Fit a surrogate, a contact planner's learned stand-in, to its verdicts.
 
@@ -38,7 +41,6 @@ def fit(
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
     from jaxleas.robots import robot_digest
-    from jaxleas.surrogates.fit import FitSettings
     from jaxleas.surrogates.fit import fit as fit_surrogate
     from jaxleas.surrogates.label_files import read_labels
     from jaxleas.surrogates.surrogate import Identity

@@ -2,20 +2,19 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
 from jax import Array
-from pydantic import Field
 
-from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.surrogates.calibration import platt
 from jaxleas.surrogates.features import mirrored, walk_features
 from jaxleas.surrogates.network import Weights, initial_weights, recur
+from jaxleas.surrogates.settings import FitSettings
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.surrogates.verdict_report import failure_along, report_on
 from jaxleas.surrogates.walks import LabelledWalks
@@ -25,27 +24,6 @@ from jaxleas.types import InputError, RootMotion
 LEAST_FAILURES = 20  # on the terrain that is learned from
 LEAST_TERRAINS = 4
 _CHUNK = 512  # walks whose hazards are computed at once
-
-
-class FitSettings(Strict):
-    """How a surrogate is fitted."""
-
-    code: Annotated[int, Field(ge=1)] = 24
-    """Outputs of the encoder."""
-    hidden: Annotated[int, Field(ge=1)] = 16
-    """Values that are carried from one kept configuration to the next."""
-    epochs: Annotated[int, Field(ge=1)] = 12
-    """Passes over the walks."""
-    minibatch: Annotated[int, Field(ge=1)] = 128
-    """Walks a gradient step."""
-    learning_rate: Annotated[float, Field(gt=0.0)] = 3e-3
-    """At the start; it falls to nothing along a cosine."""
-    weight_decay: Annotated[float, Field(ge=0.0)] = 0.03
-    mirror: bool = True
-    """Learn from each walk's mirror image as often as from the walk itself."""
-    held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.25
-    """Share of the terrains that is not learned from: half of it calibrates, half judges."""
-    seed: Annotated[int, Field(ge=0)] = 0
 
 
 @dataclass(frozen=True)

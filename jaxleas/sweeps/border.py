@@ -1,18 +1,21 @@
 """What a sweep's file states, checked whole against the run configuration before anything runs."""
 
 import typing
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from jaxleas.configuration.former import present_name
 from jaxleas.configuration.loading import load_config
 from jaxleas.configuration.values import require_field, require_value, with_values
 from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.evaluation.suites import make_suite
+from jaxleas.envs.registry import TASKS
+from jaxleas.evaluation.suites import SUITED_TASKS, make_suite
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
 from jaxleas.training.config import RunConfig
-from jaxleas.training.ppo_params import SWEPT_FIELDS
+from jaxleas.training.ppo_params import swept_fields
+from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
 # What measures must not be searched, or every trial is asked another question.
@@ -29,6 +32,7 @@ class Sweep:
         base: the run configuration that trials start from.
         whole: names of the searched fields that hold whole numbers.
         vectorised: whether trials train together in one program.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
     """
 
     source: str
@@ -36,6 +40,7 @@ class Sweep:
     base: RunConfig
     whole: frozenset[str]
     vectorised: bool
+    allow: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -55,27 +60,35 @@ class Sweep:
         return with_values(self.base, {**values, "seed": seed}, "the trial")
 
 
-def open_sweep(path: str | Path) -> Sweep:
+def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
     """Read a sweep's file and the configuration it names.
+
+    Args:
+        path: the file.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         InputError: one sentence that names the file, the key, and what would do.
     """
     path = Path(path)
     config = load_config(SweepConfig, path)
-    base = load_config(RunConfig, path.parent / config.config)
+    base = load_run_config(path.parent / config.config, allow=allow)
     for name in config.set:
-        require_field(RunConfig, name, f"{path}: set")
-    return check_sweep(config, with_values(base, config.set, f"{path}: set"), str(path))
+        require_field(type(base), name, f"{path}: set")
+    base = with_values(base, config.set, f"{path}: set")
+    return check_sweep(config, base, str(path), allow)
 
 
-def check_sweep(config: SweepConfig, base: RunConfig, source: str) -> Sweep:
+def check_sweep(
+    config: SweepConfig, base: RunConfig, source: str, allow: Collection[str] = ()
+) -> Sweep:
     """Return a sweep, or refuse it.
 
     Args:
         config: as stated.
         base: the run configuration that trials start from.
         source: what sentences begin with.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         InputError: the space names what cannot be searched, or an objective cannot be measured.
@@ -88,8 +101,10 @@ def check_sweep(config: SweepConfig, base: RunConfig, source: str) -> Sweep:
     _check_conditions(config.space, source)
     for index, objective in enumerate(config.objectives):
         if isinstance(objective, Exact):
-            _check_exact(objective, f"{source}: objectives.{index}")
-    return Sweep(source, config, base, whole, _vectorised(config, source))
+            _check_exact(objective, base, f"{source}: objectives.{index}")
+    on_host = TASKS.find(base.env.task, allow).on_host
+    vectorised = _vectorised(config, base, source, on_host)
+    return Sweep(source, config, base, whole, vectorised, tuple(allow))
 
 
 def check_dimension(name: str, dimension: Dimension, base: RunConfig, source: str) -> bool:
@@ -98,7 +113,7 @@ def check_dimension(name: str, dimension: Dimension, base: RunConfig, source: st
     Raises:
         InputError: it cannot be searched, or not like this.
     """
-    field = require_field(RunConfig, name, source)
+    field = require_field(type(base), name, source)
     where = f"{source}.{name}"
     if name == "seed":
         raise InputError(f"{where}: training seeds are listed under seeds, not searched")
@@ -153,7 +168,12 @@ def _can_be(dimension: Dimension, value: Any) -> bool:
     return number and low <= value <= high
 
 
-def _check_exact(objective: Exact, where: str) -> None:
+def _check_exact(objective: Exact, base: RunConfig, where: str) -> None:
+    if base.env.task not in SUITED_TASKS:
+        raise InputError(
+            f"{where}: exact planners judge {', '.join(SUITED_TASKS)}, not the task"
+            f" {base.env.task}: measure held_out"
+        )
     try:
         settings_from(objective.planner, **objective.parameters)
         for name in objective.suites:
@@ -162,17 +182,25 @@ def _check_exact(objective: Exact, where: str) -> None:
         raise InputError(f"{where}: {error}") from error
 
 
-def _vectorised(config: SweepConfig, source: str) -> bool:
+def _vectorised(config: SweepConfig, base: RunConfig, source: str, on_host: bool) -> bool:
     """Return whether trials train in one program; refuse it where it was asked for in vain."""
-    other = next((name for name in config.space if name not in SWEPT_FIELDS), None)
+    swept = swept_fields(base.env)
+    other = next(
+        (name for name in config.space if present_name(type(base), name) not in swept), None
+    )
     timed = any(
         isinstance(each, TimeToSuccess) and each.measure == "seconds_to_success"
         for each in config.objectives
     )
     if config.vectorised == "auto":
-        return other is None and config.pruner == "none" and not timed
+        return other is None and config.pruner == "none" and not timed and not on_host
     if not config.vectorised:
         return False
+    if on_host:
+        raise InputError(
+            f"{source}: vectorised is true, but the task {base.env.task} steps on the host, one"
+            " training at a time: leave vectorised out"
+        )
     if other is not None:
         raise InputError(
             f"{source}: vectorised is true, but space.{other} is another program for every value:"

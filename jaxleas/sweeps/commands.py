@@ -11,6 +11,7 @@ def sweep(
     storage: str | None = None,
     workers: Literal["processes", "ray"] = "processes",
     parallel: int | None = None,
+    allow: tuple[str, ...] = (),
 ) -> None:
     """Search a space of configurations; the same command goes on where it was interrupted.
 
@@ -20,13 +21,14 @@ def sweep(
         storage: grpc://HOST:PORT, a database URL or FILE.log; by default a journal in the folder.
         workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
         parallel: trainings at the same time; by default as the file says.
+        allow: code of your own that the configuration names, each MODULE:CLASS.
     """
     from jaxleas.sweeps.border import open_sweep
     from jaxleas.sweeps.progress import SweepProgress
     from jaxleas.sweeps.results import plain_table
     from jaxleas.sweeps.sweep import REPORT, run_sweep
 
-    opened = open_sweep(sweep)
+    opened = open_sweep(sweep, allow)
     progress = SweepProgress(opened)
     try:
         results = run_sweep(
@@ -43,12 +45,13 @@ def sweep(
     print(f"written: {Path(out) / REPORT}, results.csv and results.json beside it")
 
 
-def population(population: Path, *, out: Path) -> None:
+def population(population: Path, *, out: Path, allow: tuple[str, ...] = ()) -> None:
     """Train several policies in one compiled program; the same command goes on.
 
     Args:
         population: of the members, YAML.
         out: folder to work in; each member's run folder is OUT/member_NN.
+        allow: code of your own that the configuration names, each MODULE:CLASS.
     """
     import sys
 
@@ -59,7 +62,7 @@ def population(population: Path, *, out: Path) -> None:
     from jaxleas.sweeps.population_table import population_table
     from jaxleas.xla.compilation import keep_compiled_programs
 
-    members = open_population(population)
+    members = open_population(population, allow)
     use_all_cores()
     keep_compiled_programs()
     with hold_population(Path(out), members) as runs:

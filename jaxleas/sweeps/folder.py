@@ -18,7 +18,7 @@ from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.files import FolderLock, read_typed, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
 VERSION = 1
@@ -100,7 +100,7 @@ def _require_same(path: Path, sweep: Sweep) -> None:
             f"{path} is a sweep with another file, {path / 'sweep.yaml'}: give that one, or"
             " another --out"
         )
-    if load_config(RunConfig, path / "base.yaml") != sweep.base:
+    if load_run_config(path / "base.yaml", allow=sweep.allow) != sweep.base:
         raise InputError(
             f"{path} was begun with another run configuration, {path / 'base.yaml'}: restore"
             f" {sweep.config.config}, or give another --out"

@@ -4,19 +4,22 @@ A job is a file, and so is each outcome: whoever finds a job without its outcome
 from the checkpoints that are there. So a worker, or all of them, may be killed at any moment.
 """
 
+import itertools
 import os
 import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.files import parse_json, read_typed, typed, write_json
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.files import InUseError, parse_json, read_typed, typed, write_json
+from jaxleas.types.errors import JaxleasError
 
 LIFELINE = "--lifeline"
+ALLOW = "--allow"
 STOP = "stop"  # a file beside the run folder: the trial is pruned
 
 
@@ -118,33 +121,40 @@ def read_job(path: str | Path) -> Job:
     return read_typed(Job, path, "job of a sweep")
 
 
-def do_job(path: str | Path) -> None:
+def do_job(path: str | Path, allow: Sequence[str] = ()) -> None:
     """Do a job: every training of it has an outcome afterwards.
+
+    Args:
+        path: file of the job.
+        allow: code of the user's own that may be run, each MODULE:CLASS; a file's word is not
+            enough.
 
     Raises:
         InterruptedRunError: a signal asked to stop; everything done is saved.
     """
     from jaxleas.sweeps.config import Objective
-    from jaxleas.training.config import RunConfig
+    from jaxleas.training.run_config import parse_run_config
 
     job = read_job(path)
     runs = job.runs
     what = f"{path} is no job of a sweep"
-    configs = [typed(RunConfig, parse_json(each.config, what), what) for each in job.trainings]
+    configs = [
+        parse_run_config(parse_json(each.config, what), what, allow) for each in job.trainings
+    ]
     objectives = typed(list[Objective], job.objectives, what)
     if all(outcome_file(run).is_file() for run in runs):
         return
     states = (
-        _train_alone(runs[0], configs[0])
+        _train_alone(runs[0], configs[0], allow)
         if len(runs) == 1
-        else _train_together(Path(path).with_suffix(""), runs, configs)
+        else _train_together(Path(path).with_suffix(""), runs, configs, allow)
     )
     for run, config, (state, reason) in zip(runs, configs, states, strict=True):
         if not outcome_file(run).is_file():
             write_json(outcome_file(run), asdict(_outcome(run, config, objectives, state, reason)))
 
 
-def _train_alone(run: Path, config: Any) -> list[tuple[str, str]]:
+def _train_alone(run: Path, config: Any, allow: Sequence[str]) -> list[tuple[str, str]]:
     """Return state and reason of a training in its own program."""
     from jaxleas.sweeps.run_folders import hold_run_folder
     from jaxleas.training.loop import NonFiniteError, train
@@ -154,8 +164,8 @@ def _train_alone(run: Path, config: Any) -> list[tuple[str, str]]:
             raise _PrunedError(f"{run} was pruned")
 
     try:
-        with hold_run_folder(run, config, sys.argv) as folder:
-            train(config, folder, on_examined=look)
+        with hold_run_folder(run, config, sys.argv, allow) as folder:
+            train(config, folder, on_examined=look, allow=allow)
     except _PrunedError:
         return [("pruned", "")]
     except NonFiniteError as error:
@@ -163,12 +173,14 @@ def _train_alone(run: Path, config: Any) -> list[tuple[str, str]]:
     return [("done", "")]
 
 
-def _train_together(home: Path, runs: list[Path], configs: list[Any]) -> list[tuple[str, str]]:
+def _train_together(
+    home: Path, runs: list[Path], configs: list[Any], allow: Sequence[str]
+) -> list[tuple[str, str]]:
     """Return states and reasons of trainings in one program."""
     from jaxleas.sweeps.population_config import Members
     from jaxleas.sweeps.population_loop import train_population
 
-    members = Members(tuple(configs), tuple({} for _ in configs))
+    members = Members(tuple(configs), tuple({} for _ in configs), allow=tuple(allow))
     results = train_population(members, runs, home, sys.argv)
     return [("failed" if each.failure else "done", each.failure) for each in results]
 
@@ -198,15 +210,15 @@ def _die_with_parent() -> None:
     threading.Thread(target=wait_for_the_end, daemon=True).start()
 
 
-def work(path: str | Path) -> None:
-    """Do a job in a process that has touched no device yet."""
+def work(path: str | Path, allow: Sequence[str] = ()) -> None:
+    """Do a job in a process that has touched no device yet (`do_job`)."""
     from jaxleas.sweeps.devices import use_all_cores
     from jaxleas.xla.compilation import keep_compiled_programs
 
     if len(read_job(path).runs) > 1:
         use_all_cores()
     keep_compiled_programs()
-    patiently(do_job, path)
+    patiently(partial(do_job, allow=allow), path)
 
 
 def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 90.0) -> None:
@@ -215,10 +227,16 @@ def patiently(function: Callable[[Any], None], path: str | Path, seconds: float 
     while True:
         try:
             return function(path)
-        except InputError as error:
-            if "is in use by" not in str(error) or time.monotonic() > until:
+        except InUseError:
+            if time.monotonic() > until:
                 raise
             time.sleep(0.5)
+
+
+def _allowed(arguments: Sequence[str]) -> list[str]:
+    """Return what follows each --allow."""
+    pairs = itertools.pairwise(arguments)
+    return [value for option, value in pairs if option == ALLOW]
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -226,7 +244,7 @@ def main(arguments: Sequence[str]) -> int:
     if LIFELINE in arguments:
         _die_with_parent()
     try:
-        work(arguments[0])
+        work(arguments[0], _allowed(arguments))
     except JaxleasError as error:  # into the job's log
         print(f"{type(error).__name__}: {error}")
         return getattr(error, "exit_code", 2)

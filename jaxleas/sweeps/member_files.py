@@ -1,5 +1,6 @@
 """A member's run folder, written as that of a training alone: nobody can tell them apart."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,13 @@ class MemberFiles:
     """
 
     def __init__(
-        self, path: Path, config: RunConfig, command: list[str], after_step: int | None, best: float
+        self,
+        path: Path,
+        config: RunConfig,
+        command: list[str],
+        after_step: int | None,
+        best: float,
+        allow: Collection[str] = (),
     ) -> None:
         """Make the run folder, or go on in it.
 
@@ -34,12 +41,13 @@ class MemberFiles:
             config: of the member.
             command: that started the population.
             after_step: when resuming, the step resumed from: later rows are dropped.
-            best: so far.
+            best: highest held-out success so far.
+            allow: code of the user's own that may be run, each MODULE:CLASS.
 
         Raises:
             InputError: the folder is another run's, or in use.
         """
-        self.run = hold_run_folder(path, config, command)
+        self.run = hold_run_folder(path, config, command, allow)
         self.best, self.failure = best, ""
         self._log = MetricsLog(path, truncate_after_step=after_step)
 

@@ -5,14 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import judge_exact, walker
+from jaxleas.evaluation.exact import exact_success
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.guide.leas import leas
-from jaxleas.labels import Judge
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
-from jaxleas.training.policy import read_policy
 
 SUCCESS = "held_out/reached"
 POLICY_FILE = "policy.npz"
@@ -76,17 +72,6 @@ def never(objective: Objective, value: float, total: float) -> bool:
 
 def _exact_success(run: Path, objective: Exact) -> float:
     """Return the mean share of starts that reach their goal with contacts all the way."""
-    policy = read_policy(run / POLICY_FILE)
-    env = SteeringEnv(policy.config)
     settings: Any = settings_from(objective.planner, **objective.parameters)
-    shares = []
-    with Judge(objective.planner, settings, robot=env.config.robot) as judge:
-        for name in objective.suites:
-            cells = judge_exact(
-                env,
-                {"policy": walker(env, leas(env, policy))},
-                make_suite(name, objective.starts, held_out=True),
-                {objective.planner: judge},
-            )
-            shares += [cell.planned or 0.0 for cell in cells]
-    return sum(shares) / len(shares)
+    suites = [make_suite(name, objective.starts, held_out=True) for name in objective.suites]
+    return exact_success(run / POLICY_FILE, objective.planner, settings, suites)

@@ -5,7 +5,7 @@ take turns inside the program (`lax.map`): vectorised they took twice as long, b
 small matrix products run on one thread. Other devices do them all at once (`vmap`).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,14 +15,15 @@ from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from jaxleas.configuration.fields import fields_of
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
+from jaxleas.configuration.values import value_of
+from jaxleas.envs.environment import Task
 from jaxleas.training.config import RunConfig
-from jaxleas.training.held_out import make_examination
+from jaxleas.training.examination import make_examination
 from jaxleas.training.networks import make_networks
-from jaxleas.training.policy import SteeringPolicy, policy_of
+from jaxleas.training.policy import Policy, policy_of
 from jaxleas.training.ppo import make_train_step
-from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
+from jaxleas.training.ppo_params import PpoParams, swept_fields
+from jaxleas.training.run_config import make_task
 from jaxleas.training.train_state import TrainState, initial_state
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types.errors import InputError
@@ -36,23 +37,25 @@ class Population:
     """The compiled pieces of a population.
 
     Attributes:
-        configs: of the members; they differ in the seed and in `SWEPT_FIELDS` alone.
-        env: the task.
-        world: terrains to train on, shared by all.
-        held_out: terrains of the examination, likewise.
+        configs: configurations of the members; they differ in the seed and in `swept_fields` alone.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
+        task: what they learn.
+        world: what they train in, shared by all.
+        held_out: what they are examined in, likewise.
         train_step: (world, states, params) -> (states, metrics [members]); donates the states.
         examine: (held-out world, normaliser, policy) -> fractions [members].
         fresh_states: makes the states before the first update; every array [members, ...].
     """
 
     configs: Sequence[RunConfig]
-    env: SteeringEnv = field(init=False)
-    world: World = field(init=False)
-    held_out: World = field(init=False)
-    train_step: Callable[[World, TrainState, PpoParams], tuple[TrainState, Metrics]] = field(
+    allow: Collection[str] = ()
+    task: Task = field(init=False)
+    world: Any = field(init=False)
+    held_out: Any = field(init=False)
+    train_step: Callable[[Any, TrainState, PpoParams], tuple[TrainState, Metrics]] = field(
         init=False
     )
-    examine: Callable[[World, Any, Any], Metrics] = field(init=False)
+    examine: Callable[[Any, Any, Any], Metrics] = field(init=False)
     fresh_states: Callable[[], TrainState] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -60,22 +63,22 @@ class Population:
         mesh = _mesh(len(self.configs))
         whole = NamedSharding(mesh, PartitionSpec())
         self._divided = NamedSharding(mesh, PartitionSpec(AXIS))
-        self.env = SteeringEnv(config.env)
-        self.world = jax.device_put(training_world(config), whole)
-        self.held_out = jax.device_put(held_out_world(config), whole)
-        networks = make_networks(config.network, self.env)
-        step = make_train_step(config, self.env)
-        examine = make_examination(config, self.env, networks)
+        self.task = make_task(config, self.allow)
+        self.world = jax.device_put(training_world(config, self.task), whole)
+        self.held_out = jax.device_put(held_out_world(config, self.task), whole)
+        self.networks = networks = make_networks(config.network, self.task.signature)
+        step = make_train_step(config, self.task, networks)
+        examine = make_examination(config, self.task, networks)
 
-        def advance(world: World, states: TrainState, params: PpoParams):
+        def advance(world: Any, states: TrainState, params: PpoParams):
             return each_member(lambda member: step(world, *member), (states, params))
 
-        def examine_all(world: World, normaliser: Any, policy: Any) -> Metrics:
+        def examine_all(world: Any, normaliser: Any, policy: Any) -> Metrics:
             return each_member(lambda member: examine(world, *member), (normaliser, policy))
 
-        def begin(world: World, seeds: Array) -> TrainState:
+        def begin(world: Any, seeds: Array) -> TrainState:
             return each_member(
-                lambda seed: initial_state(config, self.env, world, networks, seed), seeds
+                lambda seed: initial_state(config, self.task, world, networks, seed), seeds
             )
 
         options = _compiler_options(mesh)
@@ -91,12 +94,10 @@ class Population:
         """Divide arrays [members, ...] among the devices."""
         return jax.tree.map(lambda leaf: jax.device_put(leaf, self._divided), tree)
 
-    def policy(self, states: TrainState, member: int) -> SteeringPolicy:
+    def policy(self, states: TrainState, member: int) -> Policy:
         """Return a member's policy: the averaged actor, with the member's own configuration."""
         one = member_of((states.normaliser, states.averaged), member)
-        config = self.configs[member]
-        policy = policy_of(self.env, config.network.activation, *one)
-        return policy.replace(config=config.env)  # type: ignore[attr-defined]
+        return policy_of(self.networks, self.configs[member].env, *one)
 
 
 def member_of(tree: Any, member: int) -> Any:
@@ -113,25 +114,24 @@ def require_one_program(configs: Sequence[RunConfig]) -> RunConfig:
     if not configs:
         raise InputError("a population needs at least one member")
     first = configs[0]
-    same = {"seed", *SWEPT_FIELDS}
+    swept = swept_fields(first.env)
+    same = {"seed", *swept}
     for index, other in enumerate(configs[1:], start=1):
-        for each in fields_of(RunConfig):
+        if type(other) is not type(first):
+            raise InputError(
+                f"members 0 and {index} are of different tasks: {first.env.task} and"
+                f" {other.env.task}"
+            )
+        for each in fields_of(type(first)):
             if each.section is not None or each.name in same:
                 continue
             left, right = value_of(first, each.name), value_of(other, each.name)
             if left != right:
                 raise InputError(
                     f"members 0 and {index} differ in {each.name} ({left!r} and {right!r}), which"
-                    f" is another program; they may differ in seed, {', '.join(SWEPT_FIELDS)}"
+                    f" is another program; they may differ in seed, {', '.join(swept)}"
                 )
     return first
-
-
-def value_of(config: Any, name: str) -> Any:
-    """Return a field's value by its dotted name."""
-    for part in name.split("."):
-        config = getattr(config, part)
-    return config
 
 
 def each_member(function: Callable[[Any], Any], members: Any) -> Any:

@@ -1,5 +1,6 @@
 """What a population is told, and its members' configurations."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -7,14 +8,17 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from jaxleas.configuration.former import present_name
 from jaxleas.configuration.loading import load_config
 from jaxleas.configuration.strict import Strict
 from jaxleas.configuration.values import require_field, with_values
+from jaxleas.envs.registry import TASKS
 from jaxleas.sweeps.border import check_dimension
 from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
 from jaxleas.training.config import RunConfig
-from jaxleas.training.ppo_params import SWEPT_FIELDS
+from jaxleas.training.ppo_params import swept_fields
+from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
 
@@ -55,7 +59,8 @@ class Members:
         values: of the varied fields, a member each.
         space: of the varied fields.
         evolution: None: members never meet.
-        seed: of the evolution.
+        seed: seed of the evolution.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
     """
 
     configs: tuple[RunConfig, ...]
@@ -63,6 +68,7 @@ class Members:
     space: dict[str, Dimension] = field(default_factory=dict)
     evolution: EvolutionConfig | None = None
     seed: int = 0
+    allow: tuple[str, ...] = ()
 
     def with_values(self, values: list[Values]) -> list[RunConfig]:
         """Return the members' configurations with other values of the varied fields."""
@@ -70,25 +76,30 @@ class Members:
         return [with_values(config, each, "evolution") for config, each in pairs]
 
 
-def open_population(path: str | Path) -> Members:
+def open_population(path: str | Path, allow: Collection[str] = ()) -> Members:
     """Read a population's file and the configuration it names.
+
+    Args:
+        path: the file.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         InputError: one sentence that names the file, the key, and what would do.
     """
     path = Path(path)
     config = load_config(PopulationConfig, path)
-    base = load_config(RunConfig, path.parent / config.config)
+    base = load_run_config(path.parent / config.config, allow=allow)
+    _require_vectorised(base, path, allow)
     for name in config.set:
-        require_field(RunConfig, name, f"{path}: set")
+        require_field(type(base), name, f"{path}: set")
     base = with_values(base, config.set, f"{path}: set")
     for name, dimension in config.vary.items():
         where = f"{path}: vary"
-        require_field(RunConfig, name, where)
-        if name not in SWEPT_FIELDS:
+        require_field(type(base), name, where)
+        if present_name(type(base), name) not in swept_fields(base.env):
             raise InputError(
                 f"{where}.{name} is another program for every value; within one program may vary:"
-                f" {', '.join(SWEPT_FIELDS)}"
+                f" {', '.join(swept_fields(base.env))}"
             )
         if dimension.only_when:
             raise InputError(f"{where}.{name}.only_when: members vary in the same fields")
@@ -101,4 +112,15 @@ def open_population(path: str | Path) -> Members:
         with_values(base, {**each, "seed": seed}, str(path))
         for each, seed in zip(values, config.seeds, strict=True)
     ]
-    return Members(tuple(configs), tuple(values), config.vary, config.evolution, config.seed)
+    return Members(
+        tuple(configs), tuple(values), config.vary, config.evolution, config.seed, tuple(allow)
+    )
+
+
+def _require_vectorised(base: RunConfig, path: Path, allow: Collection[str]) -> None:
+    """Refuse a task that steps on the host: its members cannot share a compiled program."""
+    if TASKS.find(base.env.task, allow).on_host:
+        raise InputError(
+            f"{path}: the task {base.env.task} steps on the host, one training at a time, and a"
+            " population is one compiled program: sweep over its configuration with jaxleas sweep"
+        )

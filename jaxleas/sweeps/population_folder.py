@@ -9,17 +9,17 @@ lock                held while a process trains
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pydantic import TypeAdapter
+from pydantic import JsonValue, TypeAdapter
 
 from jaxleas.files import read_typed, write_json
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
 from jaxleas.sweeps.folder import hold, require_vacant
 from jaxleas.sweeps.population_config import Members
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import AnyRun, parse_run_config
 from jaxleas.types.errors import InputError
 
 VERSION = 1
@@ -33,7 +33,7 @@ class _Record:
     seed: int
     evolution: EvolutionConfig | None
     vary: dict[str, Dimension]
-    members: tuple[RunConfig, ...]
+    members: tuple[dict[str, JsonValue], ...]
     version: int = VERSION
 
 
@@ -47,18 +47,28 @@ def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
     file = path / RECORD
     if not file.is_file():
         require_vacant(path, {"lock"}, "population")
-    record = _Record(members.seed, members.evolution, members.space, members.configs)
+    plain = tuple(each.model_dump(mode="json") for each in members.configs)
+    record = _Record(members.seed, members.evolution, members.space, plain)
     lock = hold(path)
     try:
         if not file.is_file():
             write_json(file, TypeAdapter(_Record).dump_python(record, mode="json"))
-        if _read(file) != record:
+        found = _read(file)
+        if replace(found, members=plain) != record or _configs(file, found, members) != list(
+            members.configs
+        ):
             raise InputError(
                 f"{path} holds another population, {file}: give its file, or another --out"
             )
         yield [path / f"member_{number:02d}" for number in range(len(members.configs))]
     finally:
         lock.close()
+
+
+def _configs(file: Path, record: _Record, members: Members) -> list[AnyRun]:
+    """Return a record's configurations; fields that are newer than its file have their defaults."""
+    what = f"{file} is no record of a population"
+    return [parse_run_config(each, what, members.allow) for each in record.members]
 
 
 def _read(file: Path) -> _Record:

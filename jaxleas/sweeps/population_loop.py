@@ -69,7 +69,7 @@ class _Loop:
     ) -> None:
         self.members, self.home = members, home
         self.config = members.configs[0]
-        self.population = Population(members.configs)
+        self.population = Population(members.configs, members.allow)
         self.checkpoints = Checkpoints(home / "checkpoints", self.config.checkpoints.keep_last)
         resuming = bool(self.checkpoints.steps())
         step, self.states, note = self._first_states(resuming)
@@ -80,7 +80,7 @@ class _Loop:
         try:
             for number, (path, config) in enumerate(zip(runs, members.configs, strict=True)):
                 after, best = step if resuming else None, note["best"][number]
-                self.files.append(MemberFiles(path, config, command, after, best))
+                self.files.append(MemberFiles(path, config, command, after, best, members.allow))
                 self.files[-1].failure = note["failures"][number]
         except BaseException:
             self.close()

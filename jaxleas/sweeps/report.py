@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from jaxleas.evaluation.page import page_template
+from jaxleas.reports import page_template
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.charts import importance_bars, learning_curves, parallel_coordinates
 from jaxleas.sweeps.folder import SweepFolder

@@ -1,18 +1,21 @@
 """Run folders that may be there already, whole or cut short by a kill."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.configuration.loading import to_yaml
 from jaxleas.runs.folder import RunFolder
 from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
 # What a run folder holds before the record that says it is whole.
 _BEGINNINGS = {"lock", "config.yaml", "provenance.diff"}
 
 
-def hold_run_folder(path: Path, config: RunConfig, command: Sequence[str]) -> RunFolder:
+def hold_run_folder(
+    path: Path, config: RunConfig, command: Sequence[str], allow: Collection[str] = ()
+) -> RunFolder:
     """Make a training's run folder, or go on in it, and hold it for writing.
 
     One whose making was cut short is made again.
@@ -20,7 +23,8 @@ def hold_run_folder(path: Path, config: RunConfig, command: Sequence[str]) -> Ru
     Args:
         path: of the folder.
         config: of the training.
-        command: that started it.
+        command: command line that started it.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         InputError: the folder is another's, or in use.
@@ -30,7 +34,7 @@ def hold_run_folder(path: Path, config: RunConfig, command: Sequence[str]) -> Ru
             _clear_beginnings(path)
         return RunFolder.create(path, to_yaml(config), command)
     run = RunFolder.open(path, writing=True, needs_checkpoint=False)
-    if load_config(RunConfig, run.config) != config:
+    if load_run_config(run.config, allow=allow) != config:
         run.close()
         raise InputError(f"{path} is the run folder of another configuration")
     return run

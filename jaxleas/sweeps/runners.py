@@ -7,11 +7,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
-from jaxleas.sweeps.job import LIFELINE, work
+from jaxleas.sweeps.job import ALLOW, LIFELINE, work
 from jaxleas.types.errors import InputError
 from jaxleas.workers.ray_workers import RayWorkers
 
@@ -51,12 +52,16 @@ class Processes:
 
     Args:
         count: of jobs at the same time.
-        command: that does the job whose file is its next argument.
+        command: command that does the job whose file is its next argument.
+        options: further arguments of the command.
     """
 
-    def __init__(self, count: int, command: Sequence[str] = _COMMAND) -> None:
+    def __init__(
+        self, count: int, command: Sequence[str] = _COMMAND, options: Sequence[str] = ()
+    ) -> None:
         self.count = count
         self._command = tuple(command)
+        self._options = tuple(options)
         self._children: list[_Child] = []
 
     @property
@@ -73,7 +78,7 @@ class Processes:
         """Begin a job."""
         with log_of(job).open("ab") as log:
             process = subprocess.Popen(
-                [*self._command, str(job), LIFELINE],
+                [*self._command, str(job), LIFELINE, *self._options],
                 stdin=subprocess.PIPE,  # closes when this process ends: the child then ends too
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -160,24 +165,32 @@ class RayJobs:
         self._cluster.close()
 
 
-def _work_in_ray(job: str) -> str:
+def _work_in_ray(job: str, allow: Sequence[str] = ()) -> str:
     """Do a job in a worker of Ray; return its last words."""
     try:
-        work(job)
+        work(job, allow)
     except Exception as error:
         return f"{type(error).__name__}: {error}"
     return ""
 
 
-def engage(kind: str, count: int) -> Runner:
-    """Return a runner of `count` jobs at the same time.
+def engage(kind: str, count: int, allow: Sequence[str] = ()) -> Runner:
+    """Return a runner of several jobs at the same time.
+
+    Args:
+        kind: "processes" or "ray".
+        count: number of jobs at the same time.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         InputError: the count is below 1, or Ray cannot be used.
     """
     if count < 1:
         raise InputError(f"--parallel is {count}; give 1 or more")
-    return RayJobs(count) if kind == "ray" else Processes(count)
+    if kind == "ray":
+        return RayJobs(count, partial(_work_in_ray, allow=tuple(allow)))
+    named = [word for name in allow for word in (ALLOW, name)]
+    return Processes(count, options=named)
 
 
 def log_of(job: Path) -> Path:

@@ -52,7 +52,8 @@ def run_sweep(
     try:
         try:
             study = Study(sweep, folder, storage)
-            runner = engage(workers, sweep.config.parallel if parallel is None else parallel)
+            count = sweep.config.parallel if parallel is None else parallel
+            runner = engage(workers, count, sweep.allow)
         except InputError:
             if is_new:  # nothing is left of a sweep that could not begin
                 shutil.rmtree(folder.path)

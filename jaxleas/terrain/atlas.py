@@ -10,14 +10,13 @@ from jax import Array
 from jaxtyping import Bool, Float, Int, UInt32
 
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types.errors import InputError
+from jaxleas.types import NO_GROUND, InputError, is_ground
 from jaxleas.xla.angles import sine_cosine
 from jaxleas.xla.compute_once import compute_once
 from jaxleas.xla.huge_pages import hold_in_huge_pages
 
-# No ground. Far below every robot, so that a height relative to any root stays below
-# conditions.VOID_IN_ROOT, and finite, so that no NaN can enter the training arithmetic.
-VOID = -1.0e4
+VOID = NO_GROUND
+"""The same under the name by which the starts of the steering task know it."""
 
 _ROUND = 12582912.0  # 1.5 * 2^23: added to a float32, it leaves a whole number in the last bits
 _ROUND_BITS = 0x4B400000  # its own bits
@@ -28,8 +27,8 @@ class Atlas:
     """Height maps of one resolution, padded with void to one shape.
 
     Attributes:
-        heights: terrain height [m], VOID where there is no ground; the outermost cells of every
-            map are VOID, so that clamping an index is the same as leaving the map.
+        heights: terrain height [m], NO_GROUND where there is none; the outermost cells of every
+            map are NO_GROUND, so that clamping an index is the same as leaving the map.
         origin: x, y of the centre of each map's cell (0, 0) [m].
         resolution: side of a cell [m].
     """
@@ -50,7 +49,7 @@ class Atlas:
     def height_at(
         self, map_index: Int[Array, "*batch"], point_in_world: Float[Array, "*batch points 2"]
     ) -> Float[Array, "*batch points"]:
-        """Return the terrain height [m] in the cell that holds each point, VOID off the map."""
+        """Return the terrain height [m] in the cell of each point, NO_GROUND off the map."""
         maps, rows, columns = self.heights.shape
         cells_per_metre = 1.0 / self.resolution
 
@@ -142,10 +141,12 @@ def make_atlas(maps: Sequence[HeightMap]) -> Atlas:
     border = 1
     rows = max(each.heights.shape[0] for each in maps) + 2 * border
     columns = max(each.heights.shape[1] for each in maps) + 2 * border
-    heights = np.full((len(maps), rows, columns), VOID, dtype=np.float32)
+    heights = np.full((len(maps), rows, columns), NO_GROUND, dtype=np.float32)
     for padded, each in zip(heights, maps, strict=True):
         inner = padded[border : border + each.heights.shape[0], border:]
-        inner[:, : each.heights.shape[1]] = np.where(np.isnan(each.heights), VOID, each.heights)
+        inner[:, : each.heights.shape[1]] = np.where(
+            is_ground(each.heights), each.heights, NO_GROUND
+        )
     origin = np.array([each.origin for each in maps], dtype=np.float32) - border * resolution
     on_device = jnp.asarray(heights)
     hold_in_huge_pages(on_device)

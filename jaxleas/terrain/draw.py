@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.files import atomic_path
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, is_ground
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,7 +95,7 @@ def _shaded(
 ) -> Float[np.ndarray, "R C 3"]:
     from matplotlib.colors import to_rgb
 
-    void = np.isnan(heights)
+    void = ~is_ground(heights)
     filled = np.where(void, 0.0, heights)
     pixels = greys(scale(filled))[..., :3]
     along_y, along_x = np.gradient(filled, *spacing)

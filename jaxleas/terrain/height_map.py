@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Float32
 
 from jaxleas.files import read_npz, require_version_array, write_npz
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, is_ground
 
 MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 0.5
 """Accepted cell sizes [m]: finer is not needed by a foot, coarser misses bridges and steps."""
@@ -47,7 +47,7 @@ class HeightMap:
     @property
     def void_fraction(self) -> float:
         """Fraction of cells without ground."""
-        return float(np.isnan(self.heights).mean())
+        return float(1.0 - is_ground(self.heights).mean())
 
     def height_at(self, points: Float[np.ndarray, "N 2"]) -> Float32[np.ndarray, " N"]:
         """Return the height of the cell that holds each point (x, y) [m]; NaN outside the map."""

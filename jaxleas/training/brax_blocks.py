@@ -43,7 +43,7 @@ from brax.training.agents.ppo import losses  # noqa: E402
 from brax.training.agents.ppo import networks as _networks  # noqa: E402
 from brax.training.agents.ppo.losses import compute_ppo_loss  # noqa: E402
 from brax.training.agents.ppo.networks import PPONetworks  # noqa: E402
-from brax.training.networks import ACTIVATION  # noqa: E402
+from brax.training.networks import ACTIVATION, MLP  # noqa: E402
 from brax.training.types import Transition as _Transition  # noqa: E402
 
 # Any pytree may pass through these; Brax's annotations say "an array", and checkers believe them.
@@ -53,6 +53,7 @@ Transition: Any = _Transition
 
 __all__ = [
     "ACTIVATION",
+    "MLP",
     "PPONetworkParams",
     "PPONetworks",
     "Transition",

@@ -1,54 +1,42 @@
-"""What a training run is told: one frozen section a room, and the whole."""
+"""The configuration of a training run: one frozen section per room, and the whole."""
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Generic, Literal, Self, TypeVar
 
 from pydantic import Field, model_validator
 
 from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive, Seed
 from jaxleas.configuration.strict import Strict
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.seeds import MAX_TRAINING_SEED
+from jaxleas.envs.environment import TaskConfig, WorldsConfig
 
 
-class LinkShares(Strict):
-    """How often an episode begins at a link of each kind, relative to the others.
+class MapsConfig(Strict):
+    """The encoder that each map of an observation gets (network.kind: maps)."""
 
-    Left to chance half of the links would be level ground, and one in ten a narrow bridge, which
-    takes the longest to learn.
-    """
+    channels: Annotated[tuple[Count, ...], Field(min_length=1, max_length=16)] = (16, 32, 32)
+    """Channels of each convolution; each halves the map's sides."""
+    kernels: Annotated[tuple[Count, ...], Field(min_length=1, max_length=16)] = (5, 3, 3)
+    """Side of each convolution's kernel."""
+    latent: Count = 64
+    """Numbers that a map becomes."""
 
-    bridge: NonNegative = 0.35
-    stairs_up: NonNegative = 0.20
-    stairs_down: NonNegative = 0.20
-    rubble: NonNegative = 0.10
-    obstacles: NonNegative = 0.12
-    flat: NonNegative = 0.03
-    detour: NonNegative = 0.0
-    """Holes and walls to be walked round (terrain.generator.detour_probability makes them)."""
-    cliff: NonNegative = 0.0
-    """A goal too high up or too far down: stop. With a share of 0.1 policies also stopped before
-    stairs; random goals teach enough of stopping."""
-    void: NonNegative = 0.0
-    """A goal where there is no ground: stop; likewise."""
-
-
-class TerrainConfig(Strict):
-    """The arenas that are trained on."""
-
-    arenas: Count = 64
-    """Number of random arenas in the atlas."""
-    resolution: Annotated[float, Field(ge=0.01, le=0.2)] = 0.04
-    """Side of a height map's cell [m]."""
-    first_seed: Annotated[int, Field(ge=0, le=MAX_TRAINING_SEED)] = 0
-    """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
-    shares: LinkShares = LinkShares()
-    generator: GeneratorConfig = GeneratorConfig()
+    @model_validator(mode="after")
+    def _as_many(self) -> Self:
+        if len(self.channels) != len(self.kernels):
+            raise ValueError(
+                f"channels = {list(self.channels)} and kernels = {list(self.kernels)} must be as"
+                " long as each other"
+            )
+        return self
 
 
 class NetworkConfig(Strict):
     """Actor and critic, two distinct networks (T sec. 3.4)."""
 
+    kind: Literal["mlp", "maps"] = "mlp"
+    """`mlp`: a perceptron over the whole observation; `maps`: maps of the observation go through
+    convolutions first."""
+    maps: MapsConfig = MapsConfig()
     hidden: tuple[Count, ...] = (128, 64, 32)
     """Sizes of the hidden layers."""
     activation: Literal["relu", "tanh", "swish", "elu"] = "relu"
@@ -92,10 +80,6 @@ class PpoConfig(Strict):
     entropy: NonNegative = 0.003
     value_weight: NonNegative = 0.5
     reward_scale: Positive = 0.1
-    final_failure: NonNegative = 60.0
-    """env.reward.failure grows linearly to this. At first falling must be cheap, or nobody dares to
-    set foot on a bridge; in the end it must be dear, or turning while walking backwards towards an
-    edge pays although one in ten falls."""
     max_gradient_norm: Positive = 1.0
     mirror: bool = True
     """Learn from each batch's mirror image as often as from the batch itself."""
@@ -151,17 +135,27 @@ class FinalConfig(Strict):
     """Starts a cell of the transitions suite."""
 
 
-class RunConfig(Strict):
-    """One experiment."""
+Env = TypeVar("Env", bound=TaskConfig)
+Worlds = TypeVar("Worlds", bound=WorldsConfig)
+
+
+class RunConfig(Strict, Generic[Env, Worlds]):
+    """One experiment; `RunConfig[SteeringConfig, TerrainConfig]`, say, is one of a task."""
 
     seed: Seed = 0
     """Of everything random in training except the terrain."""
     watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
-    """Who is told the metrics, beside metrics.jsonl; wandb and mlflow are extras."""
-    terrain: TerrainConfig = TerrainConfig()
-    env: SteeringConfig = SteeringConfig()
+    """Who is shown the metrics, besides metrics.jsonl; wandb and mlflow are extras."""
+    # A section that is left out is one of defaults, of whatever type the task's sections are.
+    terrain: Worlds = Field(default_factory=dict, validate_default=True)  # type: ignore[assignment]
+    env: Env = Field(default_factory=dict, validate_default=True)  # type: ignore[assignment]
     network: NetworkConfig = NetworkConfig()
     ppo: PpoConfig = PpoConfig()
     held_out: HeldOutConfig = HeldOutConfig()
     checkpoints: CheckpointsConfig = CheckpointsConfig()
     final: FinalConfig = FinalConfig()
+
+    @classmethod
+    def former_names(cls) -> Mapping[str, str]:
+        """Return the fields that the task's files may still call otherwise."""
+        return getattr(cls.model_fields["env"].annotation, "moved", {})

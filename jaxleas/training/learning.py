@@ -10,36 +10,40 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN
+from jaxleas.envs.heads import Head
+from jaxleas.envs.signature import Signature
 from jaxleas.training.adam import descend
 from jaxleas.training.averages import Average
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.devices import AXIS, Devices
 from jaxleas.training.loss import Experience, ppo_loss
-from jaxleas.training.networks import Normaliser, normalise
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, learning_rate
 from jaxleas.xla.compute_once import compute_once
 
 
-def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = None) -> Callable:
+def make_learn(
+    config: RunConfig, networks: ActorCritic, devices: Devices | None = None
+) -> Callable:
     """Return the optimisation, which returns weights, moments and metrics.
 
     Args:
-        config: of the run.
-        env: the task.
-        devices: that share it: each learns from its own robots, gradients are averaged.
+        config: configuration of the run.
+        networks: actor and critic.
+        devices: devices that share it: each learns from its own robots, gradients are averaged.
 
     Returns:
         A function of the state after walking, the normaliser, what was walked, what was seen after
         the last step, the hyperparameters and a key.
     """
-    ppo, network = config.ppo, config.network
+    ppo, signature = config.ppo, networks.signature
+    mirror = ppo.mirror and signature.symmetric
     share = None if devices is None or len(devices) == 1 else devices.share
 
     def seen(observation: Array, normaliser: Normaliser) -> Array:
-        return normalise(observation, normaliser).astype(network.product_type)
+        return normalise(observation, normaliser).astype(networks.numbers)
 
     def learn(
         state: TrainState,
@@ -53,7 +57,7 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
         average = Average(AXIS if share else None)
 
         def descend_all(params, moments, normaliser, always, batch, last, order, flip, noise):
-            images, last = mirror_images(env, batch, last, ppo.mirror)
+            images, last = mirror_images(signature, batch, last, mirror)
             images = replace(images, observation=seen(images.observation, normaliser))
             last = seen(last, normaliser)
             first = jnp.arange(order.shape[1]) * ppo.minibatches
@@ -68,7 +72,7 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
                     seen_last[0],
                     noise,
                     numbers,
-                    network,
+                    networks,
                     always,
                     average,
                 )
@@ -83,7 +87,7 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
             )
             return params, moments, average.metrics(metrics)
 
-        order, flip, noise = draw_minibatches(ppo, env.action_size, key)
+        order, flip, noise = draw_minibatches(ppo, signature.heads, mirror, key)
         always = state.update >= 0  # the compiler does not know
         robot_axes = (None, None, None, None, 1, 0, 1, 1, 2)
         together = share(descend_all, robot_axes) if share else descend_all
@@ -105,8 +109,8 @@ def make_learn(config: RunConfig, env: SteeringEnv, devices: Devices | None = No
 
 
 def draw_minibatches(
-    ppo: PpoConfig, action_size: int, key: Array
-) -> tuple[Int[Array, "steps some"], Bool[Array, "steps some"], Float[Array, "steps time some 4"]]:
+    ppo: PpoConfig, heads: tuple[Head, ...], mirror: bool, key: Array
+) -> tuple[Int[Array, "steps some"], Bool[Array, "steps some"], tuple[Array, ...]]:
     """Draw which robots make up each minibatch, which of them are mirrored, and normal noise.
 
     A minibatch has one robot of each group of `ppo.minibatches` neighbours, so that devices which
@@ -115,23 +119,29 @@ def draw_minibatches(
 
     Args:
         ppo: numbers of robots, minibatches and epochs.
-        action_size: numbers in an action.
-        key: for all of it.
+        heads: heads of the action, whose entropies are estimated.
+        mirror: whether half of the robots are mirrored.
+        key: randomness for all of it, consumed here.
 
     Returns:
-        Each robot's place in its group, for all minibatches one after another; and the rest.
+        Each robot's place in its group, for all minibatches one after another; which are mirrored;
+        and for each head the noise [steps, time, some, entropy_noise].
     """
     groups = ppo.environments // ppo.minibatches
     order_key, flip_key, noise_key = jax.random.split(key, 3)
     tickets = jax.random.uniform(order_key, (ppo.epochs, ppo.minibatches, groups))
     order = jnp.argsort(tickets, axis=1).reshape(-1, groups)
-    flip = jax.random.bernoulli(flip_key, 0.5 if ppo.mirror else 0.0, order.shape)
-    noise = jax.random.normal(noise_key, (len(order), ppo.unroll, groups, action_size))
+    flip = jax.random.bernoulli(flip_key, 0.5 if mirror else 0.0, order.shape)
+    keys = [noise_key] if len(heads) == 1 else jax.random.split(noise_key, len(heads))
+    noise = tuple(
+        jax.random.normal(each, (len(order), ppo.unroll, groups, head.entropy_noise))
+        for head, each in zip(heads, keys, strict=True)
+    )
     return order, flip, noise
 
 
 def mirror_images(
-    env: SteeringEnv,
+    signature: Signature,
     batch: Experience,
     last_observation: Float[Array, "robots size"],
     mirror: bool = True,
@@ -143,8 +153,8 @@ def mirror_images(
     update: a minibatch then takes whole rows.
 
     Args:
-        env: the task.
-        batch: of all robots.
+        signature: parts and heads, which know their mirrors.
+        batch: experience of all robots.
         last_observation: of all robots, after the last step.
         mirror: whether there is to be an image.
 
@@ -154,24 +164,30 @@ def mirror_images(
     """
     if not mirror:
         return jax.tree.map(lambda leaf: leaf[:, None], (batch, last_observation[None]))
-    order = jnp.asarray(env.layout.mirror_permutation, jnp.int32)
-    sign = jnp.asarray(env.layout.mirror_sign).reshape(1, 1, -1)
-    action_sign = jnp.asarray(MIRROR_ACTION_SIGN).reshape(1, 1, -1)
+
+    def both(walked, image):
+        return jax.tree.map(lambda *each: jnp.stack(each, axis=1), walked, image)
 
     def seen(whole: Array) -> Array:
-        return jnp.stack([whole, whole.at[..., order].get(mode="promise_in_bounds") * sign], axis=1)
+        return both(whole, signature.mirror(whole))
 
-    def done(action: Array) -> Array:
-        return jnp.stack([action, action * action_sign], axis=1)
-
-    twice = jax.tree.map(
-        lambda leaf: jnp.stack([leaf, leaf], axis=1), replace(batch, observation=batch.reward)
+    heads = signature.heads
+    raw = [
+        head.mirrored_raw(each)
+        for head, each in zip(heads, signature.raw(batch.raw_action), strict=True)
+    ]
+    distributions = tuple(
+        head.mirrored(each) for head, each in zip(heads, batch.distributions, strict=True)
     )
-    images = replace(
-        twice,
+    images = Experience(
         observation=seen(batch.observation),
-        raw_action=done(batch.raw_action),
-        location=done(batch.location),
+        raw_action=both(
+            batch.raw_action, raw[0] if len(raw) == 1 else jnp.concatenate(raw, axis=-1)
+        ),
+        distributions=both(batch.distributions, distributions),
+        reward=both(batch.reward, batch.reward),
+        terminated=both(batch.terminated, batch.terminated),
+        truncated=both(batch.truncated, batch.truncated),
     )
     return images, seen(last_observation[None])
 
@@ -186,7 +202,7 @@ def take_robots(
     """Return some of the robots, mirrored or as they walked.
 
     Args:
-        images: of the batch.
+        images: experience of all robots, as walked and mirrored.
         last_observation: of all robots, after the last step, likewise.
         chosen: the robots to take.
         flip: which of them are mirrored.

@@ -1,17 +1,14 @@
 """The training loop: update, log, examine, keep the state, and be ready to stop at any moment."""
 
 import logging
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
 
 import jax
 import numpy as np
 from jax import Array
 
-from jaxleas.conditions import Condition, Foresight
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.environment import Task
 from jaxleas.runs.background import Background
 from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
 from jaxleas.runs.folder import RunFolder
@@ -21,13 +18,11 @@ from jaxleas.runs.progress import Progress
 from jaxleas.runs.watching import require_watchers
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
-from jaxleas.training.held_out import make_examination
-from jaxleas.training.networks import make_networks
-from jaxleas.training.policy import SteeringPolicy, policy_of, read_policy, write_policy
-from jaxleas.training.ppo import make_train_step
+from jaxleas.training.policy import Policy, read_policy, write_policy
 from jaxleas.training.processes import any_process, from_first
-from jaxleas.training.train_state import Learned, TrainState, initial_state
-from jaxleas.training.worlds import held_out_world, training_world
+from jaxleas.training.run_config import make_task
+from jaxleas.training.train_state import Learned, TrainState
+from jaxleas.training.trainer import Trainer
 from jaxleas.types import InputError, JaxleasError
 
 POLICY_FILE = "policy.npz"
@@ -47,86 +42,30 @@ class InterruptedRunError(JaxleasError):
     exit_code = 130  # what a shell reports for Ctrl-C
 
 
-@dataclass
-class Trainer:
-    """The compiled pieces of one run.
-
-    Attributes:
-        config: of the run.
-        condition: that ends episodes; by default the environment's own, R* and C.
-        devices: that share the training; by default the first.
-        foresight: that ends episodes, too, such as a surrogate of a contact planner.
-        env: the task.
-        world: terrains to train on.
-        held_out: terrains of the examination.
-        train_step: jitted; donates the state it is given.
-        examine: jitted.
-        fresh_state: makes the state before the first update.
-    """
-
-    config: RunConfig
-    condition: Condition | None = None
-    devices: Devices = field(default_factory=one_device)
-    foresight: Foresight | None = None
-    env: SteeringEnv = field(init=False)
-    world: World = field(init=False)
-    held_out: World = field(init=False)
-    train_step: Callable[[World, TrainState], tuple[TrainState, dict[str, Array]]] = field(
-        init=False
-    )
-    examine: Callable[[World, Any, Any], dict[str, Array]] = field(init=False)
-    fresh_state: Callable[[], TrainState] = field(init=False)
-
-    def __post_init__(self) -> None:
-        config, devices = self.config, self.devices
-        self.env = SteeringEnv(config.env, self.condition, self.foresight)
-        self.world = jax.device_put(training_world(config), devices.whole)
-        self.held_out = jax.device_put(held_out_world(config), devices.whole)
-        networks = make_networks(config.network, self.env)
-        self.train_step = jax.jit(
-            make_train_step(config, self.env, devices),
-            donate_argnums=1,
-            in_shardings=(devices.whole, devices.state),
-            out_shardings=(devices.state, devices.whole),
-        )
-        self.examine = jax.jit(
-            make_examination(config, self.env, networks, devices.divide),
-            out_shardings=devices.whole,
-        )
-        begin = jax.jit(
-            lambda world: initial_state(config, self.env, world, networks),
-            out_shardings=devices.state,
-        )
-        self.fresh_state = lambda: begin(self.world)
-
-    def policy(self, state: TrainState) -> SteeringPolicy:
-        """Return the policy that is judged and exported: the averaged actor."""
-        return policy_of(self.env, self.config.network.activation, state.normaliser, state.averaged)
-
-
 def train(
     config: RunConfig,
     run: RunFolder,
-    condition: Condition | None = None,
+    *,
+    task: Task | None = None,
     devices: Devices | None = None,
-    foresight: Foresight | None = None,
     learned: Learned | None = None,
     on_examined: Callable[[], None] = lambda: None,
-) -> SteeringPolicy:
+    allow: Collection[str] = (),
+) -> Policy:
     """Train to the end, or until interrupted; everything is left in the run folder.
 
-    A folder that holds checkpoints is gone on with from the newest, exactly as if the run had
-    never been interrupted; on other devices than before, within rounding.
+    A folder that holds checkpoints is resumed from the newest, exactly as if the run had never been
+    interrupted; on other devices than before, within rounding.
 
     Args:
-        config: of the run.
+        config: configuration of the run.
         run: folder held for writing.
-        condition: that ends episodes, in place of R* and C.
-        devices: that share the training; by default the first.
-        foresight: that ends episodes, too, such as a surrogate of a contact planner.
-        learned: to begin with, in place of fresh networks; a resumed run has its own.
+        task: what is learned, in place of what the configuration asks for.
+        devices: devices that share the training; by default the first.
+        learned: networks to begin with, in place of fresh ones; a resumed run has its own.
         on_examined: called when an examination's rows are in the run folder, its checkpoint on its
-            way; what it raises ends the training, and the folder can be gone on with.
+            way; what it raises ends the training, and the folder can be resumed.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -137,7 +76,7 @@ def train(
         InputError: a watcher is not installed or not set up.
     """
     require_watchers(config.watch)  # before minutes go into compiling
-    trainer = Trainer(config, condition, devices or one_device(), foresight)
+    trainer = Trainer(config, task or make_task(config, allow), devices or one_device())
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
@@ -157,22 +96,22 @@ def train(
     ):
         desk = _Desk(trainer, run, checkpoints, log, progress, background, best, on_examined)
         _Session(trainer, interruption, desk).go_on(state)
-    return read_policy(run.path / POLICY_FILE)
+    return read_policy(run.path / POLICY_FILE, of=type(config.env))
 
 
-def assist(config: RunConfig, devices: Devices, condition: Condition | None = None) -> None:
+def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> None:
     """Take part in a training whose run folder process 0 holds: compute, and write nothing.
 
     Args:
-        config: of the run.
-        devices: of all processes.
-        condition: that ends episodes, in place of R* and C.
+        config: configuration of the run.
+        devices: devices of all processes.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
 
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked a process to stop.
     """
-    trainer = Trainer(config, condition, devices)
+    trainer = Trainer(config, make_task(config, allow), devices)
     _, state, _ = _first_state(trainer, None)
     with Interruption() as interruption:
         _Session(trainer, interruption, None).go_on(state)
@@ -185,7 +124,7 @@ def _first_state(
 
     Only process 0 has checkpoints; the other processes get its state.
     """
-    like = jax.eval_shape(trainer.fresh_state)
+    like = trainer.shapes
     found = None
 
     def look() -> str:
@@ -196,11 +135,11 @@ def _first_state(
 
     if from_first(look) == "resumed":
         step, state, note = found or (0, like, {"best": -1.0})
-        return step, trainer.devices.place(state), note["best"]
+        return step, trainer.place(state), note["best"]
     state = trainer.fresh_state()
     if learned is not None:
-        state = trainer.devices.place(learned.into(state))
-    kept = trainer.devices.gather(state)
+        state = trainer.place(learned.into(state))
+    kept = trainer.gather(state)
     if checkpoints is not None:
         checkpoints.save(0, kept, {"best": -1.0})
     return 0, state, -1.0
@@ -222,10 +161,10 @@ def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, bes
     if best < 0.0:
         return best  # none was written yet
     try:
-        read_policy(run.path / POLICY_FILE)
+        read_policy(run.path / POLICY_FILE, of=type(trainer.config.env))
     except InputError as damage:
         try:
-            step, state, _ = checkpoints.best(jax.eval_shape(trainer.fresh_state))
+            step, state, _ = checkpoints.best(trainer.shapes)
         except InputError as error:
             _LOG.warning("%s; %s: the best policy from here on is kept", damage, error)
             return -1.0
@@ -260,7 +199,7 @@ class _Session:
                 rows = self._check(pending)
                 pending = []
                 verdict = self._examine(state) if due else {}
-                kept = self.trainer.devices.gather(state)
+                kept = self.trainer.gather(state)
                 if self.desk is not None:
                     self.desk.record(rows, verdict)
                     self.desk.save(kept, done, verdict)
@@ -271,7 +210,7 @@ class _Session:
         where = "RUN" if self.desk is None else self.desk.run.path
         return (
             f"interrupted after {done} of {self.trainer.config.ppo.updates} updates; all is saved:"
-            f" go on with  python train.py --resume {where}"
+            f" resume with  python train.py --resume {where}"
         )
 
     def _check(self, pending: list[tuple[int, dict[str, Array]]]) -> list[tuple[int, dict]]:

@@ -5,7 +5,6 @@ arranged otherwise: observations come normalised, once for both networks; the ta
 same under the old and the new policy, is left out of their ratio.
 """
 
-import math
 from typing import Any
 
 import jax
@@ -14,13 +13,9 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.steering.layout import ACTION_SIZE
+from jaxleas.envs.heads.normal import NormalDistribution
 from jaxleas.training.averages import ONE_DEVICE, Average
-from jaxleas.training.config import NetworkConfig
-from jaxleas.training.networks import dense
-
-LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
-MIN_DEVIATION = 1e-3  # of the action distribution, as Brax has it
+from jaxleas.training.networks import ActorCritic
 
 
 @struct.dataclass
@@ -29,57 +24,19 @@ class Experience:
 
     Attributes:
         observation: before each step [physical units].
-        raw_action: before its tanh.
-        location: of the normal distribution it was drawn from.
-        deviation: of that distribution.
+        raw_action: raw action of all heads.
+        distributions: distribution of each head that it was drawn from.
         reward: for the step.
         terminated: 1 where the episode failed with this step, else 0.
         truncated: 1 where it was cut, else 0.
     """
 
     observation: Float[Array, "time robots size"]
-    raw_action: Float[Array, "time robots 4"]
-    location: Float[Array, "time robots 4"]
-    deviation: Float[Array, "time robots 4"]
+    raw_action: Float[Array, "time robots action_size"]
+    distributions: tuple[Any, ...]
     reward: Float[Array, "time robots"]
     terminated: Float[Array, "time robots"]
     truncated: Float[Array, "time robots"]
-
-
-@jax.custom_vjp
-def halves(logits: Float[Array, "*batch 8"]) -> tuple[Array, Array]:
-    """Return the first and the second half of what the actor answers."""
-    return logits[..., :ACTION_SIZE], logits[..., ACTION_SIZE:]
-
-
-# Their gradients are joined. JAX pads and adds them, and XLA computes both all over, padding too.
-halves.defvjp(
-    lambda logits: (halves(logits), None),
-    lambda _, gradients: (jnp.concatenate(gradients, axis=-1),),
-)
-
-
-def action_distribution(
-    logits: Float[Array, "*batch 8"],
-) -> tuple[Float[Array, "*batch 4"], Float[Array, "*batch 4"]]:
-    """Return location and deviation of the raw action's normal distribution."""
-    location, spread = halves(logits)
-    return location, jax.nn.softplus(spread) + MIN_DEVIATION
-
-
-def log_density(
-    raw_action: Float[Array, "*batch 4"],
-    location: Float[Array, "*batch 4"],
-    deviation: Float[Array, "*batch 4"],
-) -> Float[Array, "*batch"]:
-    """Return the log density of a raw action, before its tanh."""
-    distance = (raw_action - location) / deviation
-    return jnp.sum(-0.5 * distance * distance - jnp.log(deviation) - LOG_ROOT_TWO_PI, axis=-1)
-
-
-def tanh_log_slope(raw: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-    """Return log(d tanh(x) / dx)."""
-    return 2.0 * (math.log(2.0) - raw - jax.nn.softplus(-2.0 * raw))
 
 
 def advantages(
@@ -94,9 +51,9 @@ def advantages(
     """Return targets of the critic and generalised advantages (Schulman et al. 2016).
 
     Args:
-        values: of the observations.
-        last_value: of the observation after the last step.
-        reward: scaled.
+        values: value of each observation.
+        last_value: value of the observation after the last step.
+        reward: scaled reward.
         terminated: 1 where nothing follows.
         truncated: 1 where what follows was not seen: such steps teach nothing.
         discount: gamma.
@@ -123,32 +80,33 @@ def ppo_loss(
     params: Any,
     batch: Experience,
     last_observation: Float[Array, "robots size"],
-    noise: Float[Array, "time robots 4"],
+    noise: tuple[Array, ...],
     hyper: Any,
-    network: NetworkConfig,
+    networks: ActorCritic,
     always: Array | None = None,
     average: Average = ONE_DEVICE,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the loss and its metrics.
 
     Args:
-        params: of actor and critic.
-        batch: with normalised observations.
+        params: parameters of actor and critic.
+        batch: experience with normalised observations.
         last_observation: after the last step, to bootstrap from; normalised.
-        noise: standard normal, to sample the entropy with.
-        hyper: with discount, gae_lambda, clip, entropy, value_weight and reward_scale.
-        network: of actor and critic.
-        always: true, and not known to the compiler (`networks.dense`).
-        average: over the devices that have robots of this minibatch.
+        noise: standard normal numbers for each head, to sample the entropy with.
+        hyper: numbers discount, gae_lambda, clip, entropy, value_weight and reward_scale.
+        networks: actor and critic.
+        always: true, and not known to the compiler (`xla.dense`).
+        average: average over the devices that have robots of this minibatch.
     """
-    location, deviation = action_distribution(
-        dense(params.policy, batch.observation, network, always)
+    heads = networks.signature.heads
+    now = networks.signature.distributions(
+        networks.answer(params.policy, batch.observation, always)
     )
-    values = dense(params.value, batch.observation, network, always)[..., 0]
-    last_value = dense(jax.lax.stop_gradient(params.value), last_observation, network)
+    values = networks.values(params.value, batch.observation, always)
+    last_value = networks.values(jax.lax.stop_gradient(params.value), last_observation)
     targets, advantage = advantages(
         jax.lax.stop_gradient(values),
-        last_value[..., 0],
+        last_value,
         batch.reward * hyper.reward_scale,
         batch.terminated,
         batch.truncated,
@@ -156,23 +114,50 @@ def ppo_loss(
         hyper.gae_lambda,
     )
     advantage = average.standardised(advantage)
-    before = log_density(batch.raw_action, batch.location, batch.deviation)
-    ratio = jnp.exp(log_density(batch.raw_action, location, deviation) - before)
+    raw = networks.signature.raw(batch.raw_action)
+    before = batch.distributions
+    ratio = jnp.exp(_log_density(heads, raw, now) - _log_density(heads, raw, before))
     clipped = jnp.clip(ratio, 1.0 - hyper.clip, 1.0 + hyper.clip)
     policy_loss = -jnp.mean(jnp.minimum(ratio * advantage, clipped * advantage))
     value_loss = 0.5 * hyper.value_weight * jnp.mean(jnp.square(targets - values))
-    sample = location + deviation * noise
-    entropy = 0.5 + LOG_ROOT_TWO_PI + jnp.log(deviation) + tanh_log_slope(sample)
-    entropy_loss = -hyper.entropy * jnp.mean(jnp.sum(entropy, axis=-1))
+    entropy = _total([head.entropy(*each) for head, *each in zip(heads, now, noise, strict=True)])
+    entropy_loss = -hyper.entropy * jnp.mean(entropy)
     total = policy_loss + value_loss + entropy_loss
-    moved = jnp.square(batch.location - location) + jnp.square(batch.deviation)
-    divergence = jnp.log(deviation / batch.deviation) + moved / (2.0 * jnp.square(deviation)) - 0.5
+    divergence = [head.divergence(*each) for head, *each in zip(heads, before, now, strict=True)]
     return total, {
         "total_loss": total,
         "policy_loss": policy_loss,
         "v_loss": value_loss,
         "entropy_loss": entropy_loss,
-        "kl_mean": jnp.mean(jnp.sum(divergence, axis=-1)),
+        "kl_mean": jnp.mean(_total(divergence)),
+        **_spread(now),
+    }
+
+
+def _log_density(heads: Any, raw: Any, distributions: Any) -> Array:
+    return _total(
+        [head.log_density(*each) for head, *each in zip(heads, raw, distributions, strict=True)]
+    )
+
+
+def _total(each: list[Array]) -> Array:
+    """Return the sum over the heads: they are independent of each other."""
+    whole = each[0]
+    for other in each[1:]:
+        whole = whole + other
+    return whole
+
+
+def _spread(distributions: tuple[Any, ...]) -> dict[str, Array]:
+    """Return where the normal heads' distributions lie, if there are any."""
+    normal = [each for each in distributions if isinstance(each, NormalDistribution)]
+    if not normal:
+        return {}
+    places = [each.location for each in normal]
+    widths = [each.deviation for each in normal]
+    location = places[0] if len(normal) == 1 else jnp.concatenate(places, axis=-1)
+    deviation = widths[0] if len(normal) == 1 else jnp.concatenate(widths, axis=-1)
+    return {
         "policy_dist_mean_std": jnp.mean(deviation),
         "policy_dist_max_std": jnp.max(deviation),
         "policy_dist_min_std": jnp.min(deviation),

@@ -1,11 +1,11 @@
-"""A trained steering policy by itself: observation in physical units to command in physical units.
+"""A trained policy by itself: observation in physical units to command in physical units.
 
 This is the value that leaves training: roll-outs, evaluation and export all use it, so what they
 judge and ship is one thing. As a file it is plain arrays and one JSON text (`policy.npz`).
 """
 
-import itertools
 import json
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,12 @@ from jax import Array
 from jaxtyping import Float
 from pydantic import ValidationError
 
-from jaxleas.envs.steering.config import MotionLimits, SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
-from jaxleas.envs.steering.motion import scale_action
+from jaxleas.envs.environment import TaskConfig
+from jaxleas.envs.registry import DEFAULT_TASK, TASKS
+from jaxleas.envs.signature import Signature
 from jaxleas.files import parse_json, read_npz, write_npz
-from jaxleas.training.brax_blocks import ACTIVATION
-from jaxleas.training.networks import MAX_NORMALISED, Normaliser
+from jaxleas.training.networks import ActorCritic, Network, network_described
+from jaxleas.training.normaliser import MAX_NORMALISED, Normaliser
 from jaxleas.types import InputError
 
 FORMAT = 1
@@ -30,88 +29,104 @@ MAX_BYTES = 2**28  # a policy of a quarter of a gigabyte is a mistake
 
 
 @struct.dataclass
-class SteeringPolicy:
-    """Normaliser, network, tanh and action scale: everything between terrain and command.
+class Policy:
+    """Normaliser, network, heads and scales: everything between observation and command.
 
     Attributes:
-        mean: of the normaliser, in the observation's units.
-        deviation: likewise.
-        kernels: of the layers, each [inputs, outputs].
-        biases: of the layers.
-        activation: between layers, a name of Brax's.
-        config: of the environment it was trained in: observation layout, limits, heights.
+        mean: mean of the normaliser, in the observation's units.
+        deviation: deviation of the normaliser, likewise.
+        params: parameters of the network.
+        network: kind and sizes of the network.
+        signature: what it is shown and what it answers.
+        config: configuration of the task it was trained for.
     """
 
     mean: Float[Array, " size"]
     deviation: Float[Array, " size"]
-    kernels: tuple[Array, ...]
-    biases: tuple[Array, ...]
-    activation: str = struct.field(pytree_node=False)
-    config: SteeringConfig = struct.field(pytree_node=False)
+    params: Any
+    network: Network = struct.field(pytree_node=False)
+    signature: Signature = struct.field(pytree_node=False)
+    config: Any = struct.field(pytree_node=False)
 
-    @property
-    def limits(self) -> MotionLimits:
-        """Bounds of the commands."""
-        return self.config.limits
+    def answer(self, observation: Array | Mapping[str, Array]) -> Float[Array, "*batch logits"]:
+        """Return what the network answers.
 
-    def action(self, observation: Float[Array, "*batch size"]) -> Float[Array, "*batch 4"]:
-        """Return the mean action in [-1, 1]^4, as the environment's `step` takes it."""
+        Args:
+            observation: what the actor sees, in physical units: by part, or of the only part alone.
+        """
+        return self.answer_vector(self._as_shown.pack(observation))
+
+    def answer_vector(self, seen: Float[Array, "*batch size"]) -> Float[Array, "*batch logits"]:
+        """Return what the network answers to an observation that is one vector."""
 
         def across(vector: Array) -> Array:  # the batch axes, written out
-            return vector.reshape((1,) * (observation.ndim - 1) + vector.shape)
+            return vector.reshape((1,) * (seen.ndim - 1) + vector.shape)
 
-        normalised = (observation - across(self.mean)) / across(self.deviation)
-        hidden = jnp.clip(normalised, -MAX_NORMALISED, MAX_NORMALISED)
-        for index, (kernel, bias) in enumerate(zip(self.kernels, self.biases, strict=True)):
-            hidden = hidden @ kernel + across(bias)
-            if index < len(self.kernels) - 1:
-                hidden = ACTIVATION[self.activation](hidden)
-        return jnp.tanh(hidden[..., :ACTION_SIZE])  # the other outputs are exploration's
+        normalised = (seen - across(self.mean)) / across(self.deviation)
+        rows = jnp.clip(normalised, -MAX_NORMALISED, MAX_NORMALISED)
+        return self.network.plain(self.params, rows)
 
-    def __call__(self, observation: Float[Array, "*batch size"]) -> Float[Array, "*batch 4"]:
-        """Return acceleration in the root frame [m/s^2] and turn rate [rad/s]."""
-        return scale_action(self.action(observation), self.limits)
+    def action(self, observation: Array | Mapping[str, Array]) -> Any:
+        """Return the action without chance, as the task's `advance` takes it."""
+        return self.signature.mode(self.answer(observation))
+
+    def __call__(self, observation: Array | Mapping[str, Array]) -> Any:
+        """Return the command in physical units: by head, or of the only head alone."""
+        return self.signature.command(self.action(observation))
+
+    @property
+    def _as_shown(self) -> Signature:
+        """The signature without the parts that are the critic's alone."""
+        return Signature(self.signature.seen, self.signature.heads)
 
 
 def policy_of(
-    env: SteeringEnv, activation: str, normaliser: Normaliser, params: Any
-) -> SteeringPolicy:
-    """Return the policy that Brax's parameters stand for."""
-    layers = params["params"]
-    names = sorted(layers, key=lambda name: int(name.removeprefix("hidden_")))
-    return SteeringPolicy(
-        mean=normaliser.mean,  # type: ignore[arg-type]
-        deviation=normaliser.std,  # type: ignore[arg-type]
-        kernels=tuple(layers[name]["kernel"] for name in names),
-        biases=tuple(layers[name]["bias"] for name in names),
-        activation=activation,
-        config=env.config,
-    )
+    networks: ActorCritic, config: TaskConfig, normaliser: Normaliser, params: Any
+) -> Policy:
+    """Return the policy that an actor's parameters stand for.
+
+    Args:
+        networks: actor and critic.
+        config: configuration of the task.
+        normaliser: normaliser of observations.
+        params: parameters of the actor.
+    """
+    signature = networks.signature
+    mean, deviation = signature.for_actor(normaliser.mean), signature.for_actor(normaliser.std)
+    return Policy(mean, deviation, params, networks.actor, signature, config)
 
 
-def write_policy(path: str | Path, policy: SteeringPolicy) -> None:
+def write_policy(path: str | Path, policy: Policy) -> None:
     """Write a policy as plain arrays and a JSON text."""
     metadata = {
         "format": FORMAT,
-        "activation": policy.activation,
+        "activation": policy.network.activation,
+        "network": policy.network.describe(),
         "config": policy.config.model_dump(mode="json"),
     }
-    arrays = {f"kernel_{index}": np.asarray(each) for index, each in enumerate(policy.kernels)}
-    arrays |= {f"bias_{index}": np.asarray(each) for index, each in enumerate(policy.biases)}
+    arrays = policy.network.arrays(policy.params)
     write_npz(
         path,
         metadata=np.array(json.dumps(metadata)),
         mean=np.asarray(policy.mean),
         deviation=np.asarray(policy.deviation),
-        **arrays,
+        **{name: np.asarray(each) for name, each in arrays.items()},
     )
 
 
-def read_policy(path: str | Path) -> SteeringPolicy:
+def read_policy(
+    path: str | Path, allow: Collection[str] = (), of: type[TaskConfig] | None = None
+) -> Policy:
     """Read a policy.
 
+    Args:
+        path: the file.
+        allow: code of the user's own that may be run, each MODULE:CLASS: the policy's task.
+        of: type of the task's configuration, where policies of no other task will do.
+
     Raises:
-        InputError: the file is not a policy, is damaged, or is of another format.
+        InputError: the file is not a policy, is damaged, is of another format, or of a task whose
+            code may not be run.
     """
     required = ("metadata", "mean", "deviation", "kernel_0", "bias_0")
     arrays = read_npz(path, required, max_bytes=MAX_BYTES)
@@ -121,54 +136,59 @@ def read_policy(path: str | Path) -> SteeringPolicy:
             raise InputError(
                 f"{path} is a policy of format {metadata['format']}; this version reads {FORMAT}"
             )
-        config = SteeringConfig.model_validate(metadata["config"])
-        activation = str(metadata["activation"])
-        if activation not in ACTIVATION:
-            raise ValueError(f"activation {activation!r}")
+        found = _config(path, metadata["config"], allow, of)
+        signature = found.signature()
+        network = network_described(
+            metadata.get("network"),
+            str(metadata["activation"]),
+            arrays,
+            signature.seen,
+            signature.logits,
+        )
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))
         raise InputError(f"{path}: config.{key} of its metadata: {first['msg']}") from error
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{path}: its metadata is not a steering policy's: {error}") from error
-    count = _require_layers(path, arrays)
-    policy = SteeringPolicy(
-        mean=jnp.asarray(arrays["mean"]),
-        deviation=jnp.asarray(arrays["deviation"]),
-        kernels=tuple(jnp.asarray(arrays[f"kernel_{index}"]) for index in range(count)),
-        biases=tuple(jnp.asarray(arrays[f"bias_{index}"]) for index in range(count)),
-        activation=activation,
-        config=config,
-    )
-    _check_shapes(path, policy)
-    return policy
+        raise InputError(f"{path}: its metadata is not a policy's: {error}") from error
+    _require_finite(path, arrays)
+    try:
+        params = network.parameters(arrays)
+    except ValueError as error:
+        raise InputError(
+            f"{path} is no policy for the {network.inputs} values of the task {found.task}: {error}"
+        ) from error
+    if arrays["mean"].shape != (network.inputs,) or arrays["deviation"].shape != (network.inputs,):
+        raise InputError(
+            f"{path}: mean and deviation are of shape {arrays['mean'].shape} and"
+            f" {arrays['deviation'].shape}, but the task {found.task} shows {network.inputs} values"
+        )
+    mean, deviation = jnp.asarray(arrays["mean"]), jnp.asarray(arrays["deviation"])
+    return Policy(mean, deviation, params, network, signature, found)
 
 
-def _require_layers(path: str | Path, arrays: dict[str, np.ndarray]) -> int:
-    """Return the number of layers; refuse one without bias, and what is no finite number."""
-    count = sum(name.startswith("kernel_") for name in arrays)
-    layers = [f"{part}_{index}" for index in range(count) for part in ("kernel", "bias")]
-    for name in ("mean", "deviation", *layers):
-        array = arrays.get(name)
-        if array is None or array.dtype.kind != "f" or not np.isfinite(array).all():
+def _config(
+    path: str | Path, stated: Any, allow: Collection[str], of: type[TaskConfig] | None
+) -> TaskConfig:
+    """Return the configuration of the task that a policy's file states."""
+    task = stated.get("task", DEFAULT_TASK)
+    if of is not None:
+        wanted = of.model_fields["task"].default
+        if task != wanted:
+            raise InputError(f"{path} is a policy of the task {task}; one of {wanted} would do")
+        return of.model_validate(stated)
+    try:
+        found = TASKS.find(task, allow)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    return found.Config.model_validate(stated)
+
+
+def _require_finite(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
+    """Refuse what is no finite number."""
+    for name, array in arrays.items():
+        ours = name.startswith(("mean", "deviation", "kernel_", "bias_", "map_"))
+        if ours and not (array.dtype.kind == "f" and np.isfinite(array).all()):
             raise InputError(f"{path}: {name} is missing, or holds what is no finite number")
     if not (arrays["deviation"] > 0.0).all():
         raise InputError(f"{path}: deviation must be positive")
-    return count
-
-
-def _check_shapes(path: str | Path, policy: SteeringPolicy) -> None:
-    size = layout_named(policy.config.observation).size
-    chain = [size, *(bias.shape[-1] if bias.ndim == 1 else -1 for bias in policy.biases)]
-    expected = list(itertools.pairwise(chain))
-    shapes = [kernel.shape for kernel in policy.kernels]
-    if (
-        shapes != expected
-        or policy.mean.shape != (size,)
-        or policy.deviation.shape != (size,)
-        or chain[-1] < ACTION_SIZE
-    ):
-        raise InputError(
-            f"{path}: layers of shape {shapes} are no policy for the {size} values of"
-            f" {policy.config.observation}"
-        )

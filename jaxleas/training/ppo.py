@@ -1,4 +1,4 @@
-"""Proximal policy optimisation as one jitted train step: walk, learn, average."""
+"""Proximal policy optimisation as one train step: walk, learn, average."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -7,30 +7,30 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.environment import Task
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices
 from jaxleas.training.learning import make_learn
 from jaxleas.training.loss import Experience
-from jaxleas.training.networks import update_normaliser
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import update_normaliser
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState
-from jaxleas.training.walking import make_walk
+from jaxleas.training.walkers import HostWalker, make_walk
 
 Metrics = dict[str, Array]
 
 
 class TrainStep(Protocol):
-    """Draws fresh starts, walks and learns, once; pure."""
+    """Draws fresh starts, walks and learns, once."""
 
     def __call__(
-        self, world: World, state: TrainState, params: PpoParams | None = None
+        self, world: Any, state: TrainState, params: PpoParams | None = None
     ) -> tuple[TrainState, Metrics]:
         """Return the state after one update, and the metrics of that update.
 
         Args:
-            world: terrains to train on.
+            world: what the robots train in.
             state: before the update.
             params: hyperparameters; None: the configuration's, as constants of the program.
         """
@@ -38,26 +38,25 @@ class TrainStep(Protocol):
 
 
 def make_train_step(
-    config: RunConfig,
-    env: SteeringEnv,
-    devices: Devices | None = None,
+    config: RunConfig, task: Task, networks: ActorCritic, devices: Devices | None = None
 ) -> TrainStep:
-    """Return the train step: draw fresh starts, walk, learn. It is pure; jit it as you like.
+    """Return the train step of a task that steps on the device. It is pure; jit it as you like.
 
     Args:
-        config: of the run.
-        env: the task.
-        devices: that share the learning; None: one.
+        config: configuration of the run.
+        task: task that steps on the device.
+        networks: actor and critic.
+        devices: devices that share the learning; None: one.
 
     Returns:
         The train step, on whose arguments alone what it returns depends.
     """
-    walk = make_walk(config, env)
-    update = make_update(config, env, devices)
+    walk = make_walk(config, task, networks)
+    update = make_update(config, networks, devices)
     constants = PpoParams.of(config)
 
     def train_step(
-        world: World, state: TrainState, params: PpoParams | None = None
+        world: Any, state: TrainState, params: PpoParams | None = None
     ) -> tuple[TrainState, Metrics]:
         numbers = constants if params is None else params
         key, walk_key, learn_key = jax.random.split(state.key, 3)
@@ -68,27 +67,56 @@ def make_train_step(
     return train_step
 
 
+class HostTrainStep:
+    """The train step of a task that steps on the host: only its two halves are compiled.
+
+    Args:
+        config: configuration of the run.
+        task: task that steps on the host.
+        networks: actor and critic.
+        devices: devices that share the learning; None: one.
+    """
+
+    def __init__(
+        self, config: RunConfig, task: Task, networks: ActorCritic, devices: Devices | None = None
+    ) -> None:
+        self._walk = HostWalker(config, task, networks)
+        self._update = jax.jit(make_update(config, networks, devices), donate_argnums=0)
+        self._constants = PpoParams.of(config)
+
+    def __call__(
+        self, world: Any, state: TrainState, params: PpoParams | None = None
+    ) -> tuple[TrainState, Metrics]:
+        """Return the state after one update, and the metrics of that update."""
+        numbers = self._constants if params is None else params
+        key, walk_key, learn_key = jax.random.split(state.key, 3)
+        state, batch, walked = self._walk(world, state, numbers, walk_key)
+        episode, observation = state.episode, state.observation
+        learner = state.replace(episode=(), observation=())  # type: ignore[attr-defined]
+        learner, learned = self._update(learner, batch, observation, learn_key, numbers)
+        state = learner.replace(episode=episode, observation=observation, key=key)
+        return state, walked | learned
+
+
 def make_update(
-    config: RunConfig,
-    env: SteeringEnv,
-    devices: Devices | None = None,
+    config: RunConfig, networks: ActorCritic, devices: Devices | None = None
 ) -> Callable[..., tuple[TrainState, Metrics]]:
-    """Return the second half of the train step: learn from a batch, whoever walked it.
+    """Return the second half of the train step: learn from a batch, whatever walked it.
 
     The ratios of the loss are against the policy that walked, whose distributions are in the
     batch: it need not be the present one.
 
     Args:
-        config: of the run.
-        env: the task.
-        devices: that share the learning; None: one.
+        config: configuration of the run.
+        networks: actor and critic.
+        devices: devices that share the learning; None: one.
 
     Returns:
         A function (state, batch [time, robots], observation after its last step, key,
         hyperparameters) -> (state after one update, metrics); without hyperparameters the
         configuration's.
     """
-    learn = make_learn(config, env, devices)
+    learn = make_learn(config, networks, devices)
     constants = PpoParams.of(config)
 
     def update(

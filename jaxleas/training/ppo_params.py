@@ -5,9 +5,9 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from flax import struct
-from jax import Array
 
-from jaxleas.envs.steering.reward import RewardParams
+from jaxleas.configuration.values import value_of
+from jaxleas.envs.environment import TaskConfig
 from jaxleas.training.config import RunConfig
 
 # Fields of `ppo` that are numbers in the compiled program and change no shape in it.
@@ -15,11 +15,14 @@ SWEPT_PPO_FIELDS = (
     *("learning_rate", "final_learning_rate", "discount", "gae_lambda", "clip", "entropy"),
     *("value_weight", "reward_scale", "max_gradient_norm"),
 )
-SWEPT_FIELDS = (
-    *(f"ppo.{name}" for name in (*SWEPT_PPO_FIELDS, "final_failure")),
-    *(f"env.reward.{name}" for name in RewardParams.__dataclass_fields__),
-)
-"""Dotted names of the run configuration's fields that `PpoParams` holds."""
+
+
+def swept_fields(task: TaskConfig) -> tuple[str, ...]:
+    """Return the dotted names of a run configuration's fields that `PpoParams` holds."""
+    return (
+        *(f"ppo.{name}" for name in SWEPT_PPO_FIELDS),
+        *(f"env.{name}" for name in task.swept),
+    )
 
 
 @struct.dataclass
@@ -27,17 +30,16 @@ class PpoParams:
     """The numbers of a run's learning that vectorise: scalars, or arrays with a member axis.
 
     Attributes:
-        learning_rate: of Adam at the start; it falls linearly.
-        final_learning_rate: at the end.
+        learning_rate: learning rate of Adam at the start; it falls linearly.
+        final_learning_rate: learning rate at the end.
         discount: gamma.
         gae_lambda: smoothing of the advantages.
-        clip: of the probability ratio.
+        clip: bound on the change of the probability ratio.
         entropy: weight of the entropy bonus.
         value_weight: weight of the critic's loss.
-        reward_scale: rewards are multiplied by it before learning.
+        reward_scale: factor of rewards before learning.
         max_gradient_norm: longer gradients are shortened to it.
-        failure_growth: what an invalid configuration costs more at the end than at the start.
-        reward: the reward's weights at the start.
+        task: numbers of the task's own, by the dotted names of its `swept` fields.
     """
 
     learning_rate: Any
@@ -49,26 +51,15 @@ class PpoParams:
     value_weight: Any
     reward_scale: Any
     max_gradient_norm: Any
-    failure_growth: Any
-    reward: RewardParams
+    task: dict[str, Any]
 
     @classmethod
     def of(cls, config: RunConfig) -> "PpoParams":
         """Return a configuration's numbers: constants of the program that uses them."""
         return cls(
             **{name: getattr(config.ppo, name) for name in SWEPT_PPO_FIELDS},
-            failure_growth=config.ppo.final_failure - config.env.reward.failure,
-            reward=RewardParams.of(config.env.reward),
+            task={name: jnp.float32(value_of(config.env, name)) for name in config.env.swept},
         )
-
-    def reward_weights(self, progress: Array) -> RewardParams:
-        """Return the reward's weights, of which a failure's grows linearly with the training.
-
-        Args:
-            progress: share of the updates that is done.
-        """
-        failure = self.reward.failure + progress * self.failure_growth
-        return self.reward.replace(failure=failure)  # type: ignore[attr-defined]
 
     @classmethod
     def stack(cls, configs: list[RunConfig]) -> "PpoParams":

@@ -9,14 +9,14 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int, Key
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.starts import draw_starts, take
-from jaxleas.envs.steering.state import SteeringState
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.environment import Task
+from jaxleas.envs.host_starts import HostPool
+from jaxleas.envs.signature import Signature
+from jaxleas.envs.starts import pool_of, take
 from jaxleas.training.adam import BETA_1, BETA_2, EPSILON
-from jaxleas.training.brax_blocks import PPONetworkParams, PPONetworks
 from jaxleas.training.config import PpoConfig, RunConfig
-from jaxleas.training.networks import Normaliser, initial_normaliser
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import Normaliser, initial_normaliser
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.types import InputError
 
@@ -26,13 +26,13 @@ class TrainState:
     """The full state of a training run.
 
     Attributes:
-        params: of actor and critic.
+        params: parameters of actor and critic.
         averaged: exponential average of the actor's parameters: what is judged and exported.
         optimiser: Adam's moments and the learning rate's step count.
-        normaliser: of observations.
-        episode: of every robot.
-        observation: of every robot.
-        key: for everything random still to come.
+        normaliser: normaliser of observations.
+        episode: state of every robot's episode, as the task has it.
+        observation: what every robot sees, one vector each.
+        key: randomness of everything still to come.
         update: policy updates done.
     """
 
@@ -40,7 +40,7 @@ class TrainState:
     averaged: Any
     optimiser: optax.OptState
     normaliser: Normaliser
-    episode: SteeringState
+    episode: Any
     observation: Float[Array, "robots size"]
     key: Key[Array, ""]
     update: Int[Array, ""]
@@ -51,9 +51,9 @@ class Learned:
     """What a run has learned, to begin another with.
 
     Attributes:
-        params: of actor and critic.
-        averaged: the averaged actor.
-        normaliser: of observations.
+        params: parameters of actor and critic.
+        averaged: averaged parameters of the actor.
+        normaliser: normaliser of observations.
     """
 
     params: Any
@@ -112,47 +112,89 @@ def learning_rate(config: PpoConfig, params: PpoParams) -> optax.Schedule:
     return optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
 
 
-def fresh_networks(
-    networks: PPONetworks, policy_key: Key[Array, ""], value_key: Key[Array, ""]
-) -> Any:
-    """Return untrained parameters of actor and critic."""
-    return PPONetworkParams(
-        policy=networks.policy_network.init(policy_key),
-        value=networks.value_network.init(value_key),
-    )
+@struct.dataclass
+class FirstKeys:
+    """Randomness of a run's first state; each is consumed once.
+
+    Attributes:
+        rest: of everything after it.
+        policy: of the actor's parameters.
+        value: of the critic's.
+        pool: of the candidates for first states.
+        take: of the choice among them.
+        stagger: of the times at which episodes began.
+    """
+
+    rest: Key[Array, ""]
+    policy: Key[Array, ""]
+    value: Key[Array, ""]
+    pool: Key[Array, ""]
+    take: Key[Array, ""]
+    stagger: Key[Array, ""]
+
+    @classmethod
+    def of(cls, seed: Any) -> "FirstKeys":
+        """Return the keys of a training seed."""
+        return cls(*jax.random.split(jax.random.key(seed), 6))
 
 
 def initial_state(
     config: RunConfig,
-    env: SteeringEnv,
-    world: World,
-    networks: PPONetworks,
+    task: Task,
+    world: Any,
+    networks: ActorCritic,
     seed: Int[Array, ""] | None = None,
 ) -> TrainState:
     """Return the state before the first update, from the run's seed alone.
 
     Args:
-        config: of the run.
-        env: the task.
-        world: terrains to train on.
+        config: configuration of the run.
+        task: task that steps on the device.
+        world: what the robots train in.
         networks: actor and critic.
-        seed: in place of the configuration's: a population's members differ in it.
+        seed: training seed in place of the configuration's: a population's members differ in it.
     """
-    key = jax.random.key(config.seed if seed is None else seed)
-    key, policy_key, value_key, pool_key, take_key, stagger_key = jax.random.split(key, 6)
-    params = fresh_networks(networks, policy_key, value_key)
+    keys = FirstKeys.of(config.seed if seed is None else seed)
     count = config.ppo.environments
-    pool = draw_starts(env, world, pool_key, max(count, config.ppo.candidates))
-    episode, observation = take(pool, take_key, count)
+    starts = task.draw_starts(world, keys.pool, max(count, config.ppo.candidates))
+    episode, _ = take(pool_of(starts), keys.take, count)
+    observation = task.signature.pack(task.look(world, episode))
     # Episodes that began at different times end at different times: no wave of resets.
-    step = jax.random.randint(stagger_key, (count,), 0, config.env.episode_steps)
+    episode = task.stagger(episode, keys.stagger)
+    return _state(config, task.signature, networks, keys, episode, observation)
+
+
+def initial_host_state(
+    config: RunConfig, task: Task, world: Any, networks: ActorCritic
+) -> TrainState:
+    """Return the state before the first update of a task that steps on the host."""
+    from jaxleas.training.walkers.host import generator_of, look
+
+    keys = FirstKeys.of(config.seed)
+    count = config.ppo.environments
+    starts = task.draw_starts(world, generator_of(keys.pool), max(count, config.ppo.candidates))
+    pool = HostPool.of(starts)
+    episode, _ = pool.take(pool.draw_picks(generator_of(keys.take), (count,)))
+    episode = task.stagger(episode, generator_of(keys.stagger))
+    return _state(config, task.signature, networks, keys, episode, look(task, world, episode))
+
+
+def _state(
+    config: RunConfig,
+    signature: Signature,
+    networks: ActorCritic,
+    keys: FirstKeys,
+    episode: Any,
+    observation: Any,
+) -> TrainState:
+    params = networks.init(keys.policy, keys.value)
     return TrainState(
         params=params,
         averaged=jax.tree.map(jnp.copy, params.policy),  # a copy: buffers are donated once
         optimiser=make_optimiser(config.ppo, PpoParams.of(config)).init(params),
-        normaliser=initial_normaliser(config.network, env),
-        episode=episode.replace(step=step),  # type: ignore[attr-defined]
+        normaliser=initial_normaliser(config.network, signature),
+        episode=episode,
         observation=observation,
-        key=key,
+        key=keys.rest,
         update=jnp.int32(0),
     )

@@ -7,7 +7,8 @@ no JAX.
 from typing import TYPE_CHECKING, Any
 
 from jaxleas.types.errors import InputError, JaxleasError
-from jaxleas.types.paths import GuidePath
+from jaxleas.types.ground import NO_GROUND, is_ground
+from jaxleas.types.paths import GuidePath, cut_walks
 from jaxleas.types.poses import Pose, RootPose
 from jaxleas.types.queries import Query
 from jaxleas.types.stances import Contact, Stance, SupportPhase
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
 __all__ = [
+    "NO_GROUND",
     "Contact",
     "GuidePath",
     "InputError",
@@ -28,6 +30,8 @@ __all__ = [
     "Stance",
     "SupportPhase",
     "Verdict",
+    "cut_walks",
+    "is_ground",
 ]
 
 

@@ -66,7 +66,10 @@ def view(
     from jaxleas.viewer.server import serving
     from jaxleas.viewer.show import show, write_recording
 
-    _require_a_task(policies, start, goal, guide, plan, problem, record)
+    if (plan is None) != (problem is None):
+        raise InputError("--plan and --problem belong together: a plan names no feet by itself")
+    _require_drive(policies, start, goal)
+    _require_moving(policies, goal, guide, plan, record)
     for each in policies or ():  # before a page is shown; what is in them is read behind it
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
@@ -115,17 +118,11 @@ def _until_interrupted(is_the_end: bool) -> Iterator[None]:
         print()  # what the terminal made of Ctrl-C stands on a line of its own
 
 
-def _require_a_task(
+def _require_drive(
     policies: Sequence[Path] | None,
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
-    guide: Path | None,
-    plan: Path | None,
-    problem: Path | None,
-    record: Path | None,
 ) -> None:
-    if (plan is None) != (problem is None):
-        raise InputError("--plan and --problem belong together: a plan names no feet by itself")
     for option, numbers, wanted in (
         ("--start", start, "x y [m], yaw [deg]"),
         ("--goal", goal, "x y [m]"),
@@ -135,6 +132,16 @@ def _require_a_task(
             raise InputError(f"{option} {given}: give finite numbers below 1000 km, {wanted}")
         if numbers is not None and not policies:
             raise InputError(f"{option} needs --policies: there is nobody to walk there")
+
+
+def _require_moving(
+    policies: Sequence[Path] | None,
+    goal: tuple[float, float] | None,
+    guide: Path | None,
+    plan: Path | None,
+    record: Path | None,
+) -> None:
+    """Refuse a recording in which nothing moves."""
     if record is None:
         return
     if record.suffix != ".html":

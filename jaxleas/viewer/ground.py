@@ -9,6 +9,7 @@ import numpy as np
 
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.scene import Scene
+from jaxleas.types import is_ground
 from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_edges, mesh_of_map, mesh_of_polygons
 
@@ -82,7 +83,7 @@ def _add_mesh(
 
 def look_at_all(server: "ViserServer", terrain: HeightMap) -> None:
     """Place the camera so that the whole ground is in view."""
-    rows, columns = np.nonzero(~np.isnan(terrain.heights))
+    rows, columns = np.nonzero(is_ground(terrain.heights))
     low = np.array([columns.min(), rows.min()]) * terrain.resolution + terrain.origin
     high = np.array([columns.max(), rows.max()]) * terrain.resolution + terrain.origin
     middle = np.append(0.5 * (low + high), np.nanmedian(terrain.heights))
@@ -102,10 +103,10 @@ def look_near(server: "ViserServer", terrain: HeightMap, place: tuple[float, flo
     if max(x_max - x_min, y_max - y_min) <= LARGEST_VIEW:
         return
     if place is None:
-        _, columns = np.nonzero(~np.isnan(terrain.heights))
+        _, columns = np.nonzero(is_ground(terrain.heights))
         place = terrain.origin[0] + columns.min() * terrain.resolution + 0.8, 0.5 * (y_min + y_max)
     ground = float(terrain.height_at(np.array([place]))[0])
-    if np.isnan(ground):
+    if not is_ground(ground):
         ground = float(np.nanmedian(terrain.heights))
     _look_at(server, np.array([place[0] + 0.2 * LARGEST_VIEW, place[1], ground]), LARGEST_VIEW)
 

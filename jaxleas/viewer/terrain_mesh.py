@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import is_ground
 
 MOST_CELLS = 250_000
 """A larger map is thinned before it is sent: a browser on an old laptop must turn it smoothly."""
@@ -95,7 +96,7 @@ def _thinned(terrain: HeightMap) -> tuple[np.ndarray, float, tuple[float, float]
     padded = np.full((rows * step, columns * step), np.nan, np.float32)
     padded[: terrain.shape[0], : terrain.shape[1]] = terrain.heights
     blocks = padded.reshape(rows, step, columns, step)
-    highest = np.where(np.isnan(blocks), -np.inf, blocks).max(axis=(1, 3))
+    highest = np.where(is_ground(blocks), blocks, -np.inf).max(axis=(1, 3))
     shift = 0.5 * (step - 1) * terrain.resolution
     return (
         np.where(np.isneginf(highest), np.nan, highest),
@@ -105,7 +106,7 @@ def _thinned(terrain: HeightMap) -> tuple[np.ndarray, float, tuple[float, float]
 
 
 def _tops(heights: np.ndarray, x: np.ndarray, y: np.ndarray, half: float) -> np.ndarray:
-    ground = ~np.isnan(heights)
+    ground = is_ground(heights)
     x, y, z = x[ground], y[ground], heights[ground]
     around = [(-half, -half), (half, -half), (half, half), (-half, half)]
     return np.stack([np.stack([x + dx, y + dy, z], axis=-1) for dx, dy in around], axis=1)

@@ -9,11 +9,12 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.guide.leas import leas
 from jaxleas.guide.onnx_policy import OnnxPolicy
 from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import Atlas
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.policy import Policy
 from jaxleas.types import RootMotion
 
 State = Literal["waiting", "walking", "arrived", "invalid"]
@@ -49,7 +50,7 @@ class Walker:
     """
 
     def __init__(
-        self, name: str, env: SteeringEnv, policy: SteeringPolicy | OnnxPolicy, atlas: Atlas
+        self, name: str, env: SteeringEnv, policy: Policy | OnnxPolicy, atlas: Atlas
     ) -> None:
         """Compile the step.
 
@@ -117,7 +118,7 @@ class Walker:
 
     def between(self, share: float) -> Pose:
         """Return the pose so far between the last two configurations, both ends included."""
-        turn = (self.pose.yaw - self.before.yaw + np.pi) % (2.0 * np.pi) - np.pi
+        turn = float(wrap_angle_on_host(self.pose.yaw - self.before.yaw))
         way = self.pose.position - self.before.position
         return Pose(self.before.position + share * way, self.before.yaw + share * turn)
 

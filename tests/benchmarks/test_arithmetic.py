@@ -18,7 +18,10 @@ from benchmarks.arithmetic import (
 )
 from benchmarks.context import changed
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import run_config_of
+
+RunConfig = run_config_of("steering")
+
 
 RATES = Rates(matrix=1e11, memory=1e10, gather=1e9)
 

@@ -11,7 +11,8 @@ import pytest
 from benchmarks.rival import write_task
 from benchmarks.rivals.steering_numpy import GOALS, SteeringBatch
 from benchmarks.rivals.task import read_task
-from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv, draw_starts, take
+from jaxleas.envs.steering import RewardParams, Steering, SteeringConfig, SteeringEnv
+from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.state import GOALS as OUR_GOALS
 from jaxleas.training.worlds import training_world
 from tests.training.runs import ROOT, tiny
@@ -21,7 +22,7 @@ COUNT, STEPS = 64, 60
 
 @pytest.fixture(scope="module")
 def world():
-    return training_world(tiny())
+    return training_world(tiny(), Steering(tiny().env, tiny().terrain))
 
 
 @pytest.fixture(scope="module", params=["thesis144", "icra81"])
@@ -53,8 +54,8 @@ def test_steps_equal_ours(both, world):
     env, task = both
     assert GOALS == OUR_GOALS
     weights = RewardParams.of(env.config.reward)
-    pool = jax.jit(lambda: draw_starts(env, world, jax.random.key(0), 256))()
-    state, observation = take(pool, jax.random.key(1), COUNT)
+    keys = jax.random.key(0), jax.random.key(1)
+    state, observation = jax.jit(lambda: begin(env, world, keys, COUNT, of=256))()
     batch = SteeringBatch(task, COUNT)
     put(batch, state)
     step = jax.jit(env.step)

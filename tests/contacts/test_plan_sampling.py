@@ -15,6 +15,7 @@ from jaxleas.contacts.commands import NotCertifiedError
 from jaxleas.contacts.plan_sampling import walked_problem
 from jaxleas.contacts.posture_model import about, chain
 from jaxleas.contacts.problem import FootPose
+from jaxleas.contacts.sampling.planner import _Walk
 from jaxleas.files import write_json, write_npz
 from jaxleas.robots import load_talos
 from jaxleas.robots.legs import leg_posture, load_talos_legs
@@ -160,6 +161,16 @@ def test_what_was_reached_is_kept_where_the_walk_stops() -> None:
     assert (aside.status, aside.last_feasible_phase, aside.max_violation) == ("not_found", -1, None)
 
 
+def test_why_neither_foot_moved_is_explained_whatever_the_words(monkeypatch) -> None:
+    stop = _Walk._stop
+    monkeypatch.setattr(
+        _Walk, "_stop", lambda self, guide, ending, reason: stop(self, guide, ending, "besetzt")
+    )
+    plan = plan_sampling(straight(4.0), hole())
+    assert re.search("besetzt: LF .*; RF ", plan.reason)
+    assert plan_sampling(straight(4.0), flat(), time_limit=1e-9).status == "time_limit"
+
+
 def test_a_guide_that_leaves_the_scene_is_refused() -> None:
     with pytest.raises(InputError, match="leaves the scene: configuration 426, with its root at"):
         plan_sampling(straight(9.0), flat())
@@ -168,7 +179,8 @@ def test_a_guide_that_leaves_the_scene_is_refused() -> None:
 def test_late_is_late_and_not_a_verdict() -> None:
     plan = plan_sampling(straight(4.0), flat(), time_limit=1e-9)
     assert (plan.feasible, plan.status) == (False, "time_limit")
-    assert "not decided within the time limit of 1e-09 s" in plan.reason
+    expected = "not decided within the time limit of 1e-09 s: stopped at configuration 0"
+    assert plan.reason.startswith(expected)
     with pytest.raises(InputError, match="positive number of seconds"):
         plan_sampling(straight(4.0), flat(), time_limit=0.0)
 

@@ -11,11 +11,13 @@ from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.opening import open_folder
 from jaxleas.distillation.practice import practice_config, read_run
 from jaxleas.distillation.workplace import Workplace
+from jaxleas.envs.steering import Steering
 from jaxleas.files import read_json
 from jaxleas.runs.folder import RunFolder
 from jaxleas.surrogates import read_surrogate
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.loop import train
+from jaxleas.training.networks.mlp import layers_of
 from jaxleas.training.policy import read_policy
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
@@ -61,10 +63,10 @@ def test_what_was_learned_is_read_and_carried_over(start):
     config, learned = read_run(start)
     policy = read_policy(start / "policy.npz")
     shapes = [layer["kernel"].shape for _, layer in sorted(learned.params.policy["params"].items())]
-    assert shapes == [kernel.shape for kernel in policy.kernels]
+    assert shapes == [kernel.shape for kernel, _ in layers_of(policy.params)]
     practice = practice_config(DistillationConfig(), config)
     assert practice.network == config.network
-    assert practice.env.reward.failure == config.ppo.final_failure
+    assert practice.env.reward.failure == config.env.reward.final_failure
     assert practice.ppo.steps == DistillationConfig().practice.steps
 
 
@@ -86,7 +88,8 @@ def test_labels_and_practice_may_walk_on_another_terrain(start, tmp_path):
             np.concatenate(list(scene.surfaces.values())),
             np.concatenate(list(arena.scene.surfaces.values())),
         )
-    assert place.ground.world.map_index.tolist() == training_world(practice).map_index.tolist()
+    world = training_world(practice, Steering(practice.env, practice.terrain))
+    assert place.ground.world.map_index.tolist() == world.map_index.tolist()
 
 
 def test_practice_may_ask_for_another_speed_and_reward(start):
@@ -98,7 +101,7 @@ def test_practice_may_ask_for_another_speed_and_reward(start):
     assert practice.env.desired_speed == 0.12
     assert practice.ppo.steps == 4096
     # Failing is as dear at the end as at the beginning.
-    assert practice.env.reward.failure == practice.ppo.final_failure == 20.0
+    assert practice.env.reward.failure == practice.env.reward.final_failure == 20.0
     kept = config.env.reward.model_dump() | {"direction": 12.0, "failure": 20.0}
     assert practice.env.reward.model_dump() == kept
 
@@ -149,7 +152,8 @@ def test_it_goes_through_all_stages_and_goes_on_where_it_was_stopped(start, tmp_
     assert read_surrogate(folder.surrogate).identity.parameters["samples"] == 2000
     before = read_policy(start / "policy.npz")
     after = read_policy(folder.policy)
-    assert not np.array_equal(before.kernels[0], after.kernels[0])
+    first = [layers_of(policy.params)[0][0] for policy in (before, after)]
+    assert not np.array_equal(*first)
 
     # All is done: nothing is done again, and the time that it took is not forgotten.
     kept = folder.table.read_bytes()

@@ -14,11 +14,13 @@ from jaxleas.distillation.faithful_practice import practise_faithfully
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.labelling import Ground
 from jaxleas.distillation.practice import read_run
+from jaxleas.envs.steering import Steering
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.labels import Judge, ProcessWorkers, Verdict
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.loop import InterruptedRunError
+from jaxleas.training.normaliser import normalise
 from jaxleas.training.train_state import Learned
 from jaxleas.training.worlds import training_world
 
@@ -63,7 +65,11 @@ class Strict:
 @pytest.fixture(scope="module")
 def ground():
     scenes = tuple(generate_arena(CONFIG.terrain.generator, seed).scene for seed in range(2))
-    return Ground(SteeringEnv(CONFIG.env), training_world(CONFIG), scenes)
+    return Ground(
+        SteeringEnv(CONFIG.env),
+        training_world(CONFIG, Steering(CONFIG.env, CONFIG.terrain)),
+        scenes,
+    )
 
 
 def make(ground, faithful):
@@ -101,13 +107,11 @@ def test_whole_episodes_are_walked_and_remember_who_walked_them(training, ground
         assert not episodes.terminated[robot, : steps - 1].any()
         assert valid[robot].sum() == steps + 1 - ended
         assert valid[robot, : steps + 1 - ended].all()
-    distribution = training.networks.parametric_action_distribution
-    logits = training.networks.policy_network.apply(
-        state.normaliser, state.params.policy, episodes.observation
-    )
-    normal = distribution.create_dist(logits)
-    np.testing.assert_allclose(episodes.location, normal.loc, atol=1e-5)
-    np.testing.assert_allclose(episodes.deviation, normal.scale, atol=1e-5)
+    seen = normalise(episodes.observation, state.normaliser)
+    logits = training.networks.judged(state.params.policy, seen)
+    (normal,) = training.networks.signature.distributions(logits)
+    np.testing.assert_allclose(episodes.location, normal.location, atol=1e-5)
+    np.testing.assert_allclose(episodes.deviation, normal.deviation, atol=1e-5)
     assert episodes.failure_cost == pytest.approx(CONFIG.env.reward.alive)
 
 
@@ -211,8 +215,8 @@ class Dizzy(Strict):
 @pytest.mark.slow
 def test_a_policy_learns_to_avoid_what_its_planner_cannot_do(ground):
     config = small(16)
-    ppo = config.ppo.model_copy(update={"learning_rate": 1e-2, "epochs": 4, "final_failure": 10.0})
-    reward = config.env.reward.model_copy(update={"failure": 10.0})
+    ppo = config.ppo.model_copy(update={"learning_rate": 1e-2, "epochs": 4})
+    reward = config.env.reward.model_copy(update={"failure": 10.0, "final_failure": 10.0})
     env = config.env.model_copy(update={"reward": reward})
     config = config.model_copy(update={"ppo": ppo, "env": env})
     robots = FaithfulConfig(robots=32)

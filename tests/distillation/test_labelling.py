@@ -4,7 +4,7 @@ import jax
 import numpy as np
 import pytest
 
-from jaxleas.distillation.collect import collect
+from jaxleas.distillation.collect import WalksWanted, collect
 from jaxleas.distillation.labelling import choose
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.envs.steering.world import make_world
@@ -30,10 +30,10 @@ def test_half_is_chosen_at_random_and_half_where_it_is_least_sure():
 def walks():
     env = SteeringEnv(SteeringConfig())
     world = make_world([generate_arena(GeneratorConfig(rows=3, columns=3), 0)], resolution=0.05)
-    disturbed = collect(
-        env, world, random_policy(), jax.random.key(0), 64, STEPS, np.array([0.0, 0.5])
+    disturbed, calm = (
+        collect(env, world, random_policy(), jax.random.key(0), WalksWanted(64, STEPS, kinds))
+        for kinds in (np.array([0.0, 0.5]), np.array([0.0]))
     )
-    calm = collect(env, world, random_policy(), jax.random.key(0), 64, STEPS, np.array([0.0]))
     return env, disturbed, calm
 
 

@@ -17,7 +17,7 @@ from jaxleas.files import read_json, write_json
 from jaxleas.types import InputError
 
 from ..evaluation.test_exact import verdict
-from ..evaluation.test_table import cell, evaluation
+from ..reports.test_table import cell, evaluation
 from ..training.runs import ROOT
 
 ROUNDS = ROOT / "benchmarks" / "results" / "leas_p2_sampling_rounds.json"

@@ -7,9 +7,10 @@ import pytest
 
 from jaxleas.distillation.widening import widen, widen_policy
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of
-from jaxleas.training.train_state import Learned, fresh_networks
+from jaxleas.training.train_state import Learned
 from jaxleas.types import InputError
 
 from ..training.runs import tiny
@@ -19,11 +20,14 @@ CONFIG = tiny()
 
 @pytest.fixture(scope="module")
 def learned():
-    env = SteeringEnv(CONFIG.env)
-    networks = make_networks(CONFIG.network, env)
     with jax.numpy_rank_promotion("allow"):  # Brax's own code relies on it
-        params = fresh_networks(networks, jax.random.key(0), jax.random.key(1))
-    return Learned(params, params.policy, initial_normaliser(CONFIG.network, env))
+        params = networks(CONFIG).init(jax.random.key(0), jax.random.key(1))
+    normaliser = initial_normaliser(CONFIG.network, CONFIG.env.signature())
+    return Learned(params, params.policy, normaliser)
+
+
+def networks(config):
+    return make_networks(config.network, config.env.signature())
 
 
 def observations(size: int):
@@ -39,12 +43,12 @@ def test_the_wider_policy_does_what_it_did_whatever_is_new(learned):
     config, wider = widen(CONFIG, learned, "thesis145")
     assert config.env.observation == "thesis145"
     env, before = SteeringEnv(config.env), SteeringEnv(CONFIG.env)
-    policy = policy_of(before, CONFIG.network.activation, learned.normaliser, learned.averaged)
+    policy = policy_of(networks(CONFIG), CONFIG.env, learned.normaliser, learned.averaged)
     seen = observations(before.layout.size)
     more = jnp.concatenate([seen, 100.0 * observations(1)], axis=1)
     for after in (
         widen_policy(policy, env),
-        policy_of(env, CONFIG.network.activation, wider.normaliser, wider.averaged),
+        policy_of(networks(config), config.env, wider.normaliser, wider.averaged),
     ):
         np.testing.assert_allclose(after.action(more), policy.action(seen), atol=1e-6)
         assert after.config.observation == "thesis145"
@@ -54,11 +58,7 @@ def test_the_wider_policy_does_what_it_did_whatever_is_new(learned):
 def test_actor_and_critic_fit_the_wider_environment(learned):
     config, wider = widen(CONFIG, learned, "thesis145")
     env = SteeringEnv(config.env)
-    fresh = jax.eval_shape(
-        lambda: fresh_networks(
-            make_networks(config.network, env), jax.random.key(0), jax.random.key(0)
-        )
-    )
+    fresh = jax.eval_shape(lambda: networks(config).init(jax.random.key(0), jax.random.key(0)))
     shapes = jax.tree.map(jnp.shape, wider.params)
     assert shapes == jax.tree.map(jnp.shape, fresh)
     assert np.shape(wider.normaliser.mean) == (env.layout.size,)

@@ -5,13 +5,18 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv, draw_starts, take
-from jaxleas.envs.steering.starts import draw_picks, restart_where
+from jaxleas.envs.starts import draw_picks, pool_of, restart_where, take
+from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv
+from jaxleas.envs.steering import draw_starts as draw_candidates
 from jaxleas.runs.checkpoints import Checkpoints
 
 from .worlds import flat, height_map, world_of
 
 LIFE = 3
+
+
+def draw_starts(env, world, key, count):
+    return pool_of(draw_candidates(env, world, key, count))
 
 
 class Patience:

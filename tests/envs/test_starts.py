@@ -1,25 +1,25 @@
 import itertools
+from functools import partial
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import (
-    SteeringConfig,
-    SteeringEnv,
-    draw_picks,
-    draw_starts,
-    restart_where,
-    take,
-)
+from jaxleas.envs.starts import draw_picks, pool_of, restart_where, take
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.envs.steering import draw_starts as draw_candidates
+from jaxleas.envs.steering.config import LinkShares
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
-from jaxleas.training.config import LinkShares
 from jaxleas.types import InputError
 
 from .worlds import flat, height_map, world_of
+
+
+def draw_starts(env, world, key, count):
+    return pool_of(draw_candidates(env, world, key, count))
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,8 @@ def arena_world():
 def test_every_start_is_valid_and_its_goal_can_be_stood_at(env, arena_world):
     pool = draw_starts(env, arena_world, jax.random.key(0), 512)
     assert 0 < int(pool.valid_count) < 512  # some candidates fall: the check is not vacuous
-    state, observation = take(pool, jax.random.key(1), 400)
+    state, _ = take(pool, jax.random.key(1), 400)
+    observation = env.look(arena_world.atlas, state)
     heights = env.local_heights(arena_world.atlas, state.plan.map_index, state.motion)
     assert np.all(env.condition(heights, state.motion) >= 0.0)
     np.testing.assert_array_equal(observation, env.observe(heights, state.motion, env.goal(state)))
@@ -84,7 +85,7 @@ def test_no_start_is_replayed(env, arena_world):
 
 def test_only_those_who_are_done_start_anew(env, arena_world):
     pool = draw_starts(env, arena_world, jax.random.key(8), 256)
-    state, observation = take(pool, jax.random.key(9), 8)
+    state, _ = take(pool, jax.random.key(9), 8)
     state = state.replace(step=jnp.full(8, 17, dtype=jnp.int32))
     done = jnp.array([True, False] * 4)
     pick = draw_picks(pool, jax.random.key(10), done.shape)
@@ -92,8 +93,9 @@ def test_only_those_who_are_done_start_anew(env, arena_world):
     np.testing.assert_array_equal(after.step, np.where(done, 0, 17))
     np.testing.assert_array_equal(after.motion.position[1::2], state.motion.position[1::2])
     np.testing.assert_array_equal(after.motion.yaw[::2], pool.state.motion.yaw[pick[::2]])
-    seen = np.where(done[:, None], pool.observation[pick], observation)
-    np.testing.assert_allclose(env.look(arena_world.atlas, after), seen, atol=1e-5)
+    look = partial(env.look, arena_world.atlas)
+    seen = np.where(done[:, None], look(pool.state)[pick], look(state))
+    np.testing.assert_allclose(look(after), seen, atol=1e-5)
 
 
 def test_every_valid_candidate_is_picked_alike_and_no_other(env, arena_world):

@@ -42,6 +42,7 @@ def world_of(*maps: HeightMap) -> World:
         near_area=jnp.asarray(start),
         goal_area=jnp.asarray(goal),
         arena_area=jnp.asarray(areas),
+        kind=jnp.zeros(len(maps), dtype=jnp.int32),
         crossable=jnp.ones(len(maps), dtype=bool),
         cumulative_share=jnp.linspace(1 / len(maps), 1.0, len(maps)),
     )

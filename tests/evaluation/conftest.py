@@ -13,7 +13,8 @@ from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.runs.folder import RunFolder
 from jaxleas.terrain.scenarios import Scenario
 from jaxleas.terrain.scene import Scene
-from jaxleas.training.policy import SteeringPolicy, write_policy
+from jaxleas.training.networks.mlp import Mlp, params_of
+from jaxleas.training.policy import Policy, write_policy
 
 
 @struct.dataclass
@@ -52,18 +53,20 @@ def flat_suite() -> Suite:
     return Suite("flat", seed=0, steps=400, cells=cells)
 
 
-def random_policy(seed: int = 0) -> SteeringPolicy:
+def random_policy(seed: int = 0) -> Policy:
     size = layout_named("thesis144").size
     first, second = jax.random.split(jax.random.key(seed))
-    return SteeringPolicy(
+    return Policy(
         mean=jnp.zeros(size),
         deviation=jnp.ones(size),
-        kernels=(
-            0.1 * jax.random.normal(first, (size, 8)),
-            0.1 * jax.random.normal(second, (8, 8)),
+        params=params_of(
+            [
+                (0.1 * jax.random.normal(first, (size, 8)), jnp.zeros(8)),
+                (0.1 * jax.random.normal(second, (8, 8)), jnp.zeros(8)),
+            ]
         ),
-        biases=(jnp.zeros(8), jnp.zeros(8)),
-        activation="relu",
+        network=Mlp(size, (8,), 8, "relu"),
+        signature=SteeringConfig().signature(),
         config=SteeringConfig(),
     )
 

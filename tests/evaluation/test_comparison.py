@@ -1,19 +1,19 @@
 import pytest
 
-from jaxleas.evaluation.commands import evaluate
-from jaxleas.evaluation.comparison import compare
+from jaxleas.evaluation.comparison import Planning, compare
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import load_candidate
 from jaxleas.evaluation.forecast import Forecast
-from jaxleas.evaluation.published import published
 from jaxleas.evaluation.result_file import read_evaluation
-from jaxleas.evaluation.side_by_side import markdown, rows
 from jaxleas.labels import Judge, MipSettings
+from jaxleas.reports.commands import evaluate
+from jaxleas.reports.published import published
+from jaxleas.reports.side_by_side import markdown, rows
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.evaluation.conftest import random_policy
 from tests.evaluation.test_exact import verdict
-from tests.evaluation.test_table import cell, evaluation
+from tests.reports.test_table import cell, evaluation
 
 BASELINES = ("rb_lin", "rb_kino")
 
@@ -46,7 +46,7 @@ def test_an_interrupted_comparison_goes_on_where_it_was(run, flat_suite, tmp_pat
         if " 4/8: " in text:
             raise KeyboardInterrupt
 
-    arguments = (candidate, contenders, flat_suite, ("sampling", "mip"))
+    arguments = (candidate, contenders, flat_suite, Planning(("sampling", "mip")))
     with pytest.raises(KeyboardInterrupt):
         compare(*arguments, file=file, say=stop_at_the_fourth)
     assert len(read_evaluation(file).cells) == 3
@@ -62,12 +62,12 @@ def test_what_has_changed_is_judged_again_and_nothing_else(run, flat_suite, tmp_
     file, candidate = tmp_path / "table.json", load_candidate(run)
     further = write_policy(tmp_path / "p2.npz", random_policy(seed=2)) or tmp_path / "p2.npz"
 
-    def again(settings=None, **options):
+    def again():
         asked.clear()
         policies = {"leas_p2_mip": further}
         names = ("rb_lin", "leas_p2_mip")
         contenders = make_contenders(load_candidate(run), policies, names)
-        compare(load_candidate(run), contenders, flat_suite, ("mip",), file=file, **options)
+        compare(load_candidate(run), contenders, flat_suite, Planning(("mip",)), file=file)
         return read_evaluation(file)
 
     before = again()
@@ -80,8 +80,7 @@ def test_what_has_changed_is_judged_again_and_nothing_else(run, flat_suite, tmp_
         candidate,
         make_contenders(candidate, wanted=("rb_lin",)),
         flat_suite,
-        ("mip",),
-        settings={"mip": MipSettings(keep_every=10)},
+        Planning(("mip",), {"mip": MipSettings(keep_every=10)}),
         file=file,
     )
     assert len(asked) == 2
@@ -148,7 +147,7 @@ def test_the_command_writes_and_prints_the_table(run, tmp_path, capsys, asked):
 
 
 def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):
-    from jaxleas.evaluation.scene_pictures import draw_side_by_side
+    from jaxleas.reports.scene_pictures import draw_side_by_side
 
     candidate = load_candidate(run)
     walkers = make_contenders(candidate, wanted=["rb_lin"]).walkers

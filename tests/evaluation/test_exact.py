@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from jaxleas.contacts.sampling import SamplingSettings
-from jaxleas.evaluation.exact import ask, judge_exact, result_key, summarise_plans, walker
+from jaxleas.evaluation.exact import (
+    Bookkeeping,
+    ask,
+    judge_exact,
+    result_key,
+    summarise_plans,
+    walker,
+)
 from jaxleas.evaluation.judge import walk
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
@@ -111,7 +118,9 @@ def test_what_is_known_is_neither_walked_nor_asked_again(env, flat_suite):
 
     first = judge_exact(env, {"fly": fly}, flat_suite, {"sampling": oracle})
     known = {result_key(each): each for each in first}
-    again = judge_exact(env, {"fly": fly}, flat_suite, {"sampling": oracle}, known=known)
+    again = judge_exact(
+        env, {"fly": fly}, flat_suite, {"sampling": oracle}, bookkeeping=Bookkeeping(known)
+    )
     assert again == first
     assert len(walks) == len(oracle.asked) == 2
 

@@ -5,11 +5,11 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.evaluation.figure_file import Figures, StepRow, read_figures, write_figures
-from jaxleas.evaluation.figure_pictures import draw_figures
 from jaxleas.evaluation.figures import COURSE, step_lengths
 from jaxleas.evaluation.figures_command import _opened
 from jaxleas.files import read_json, write_json
 from jaxleas.labels import Judge
+from jaxleas.reports.figure_pictures import draw_figures
 from jaxleas.types import InputError
 from tests.evaluation.test_exact import verdict
 

@@ -10,9 +10,10 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Judged
 from jaxleas.evaluation.judge import summarise, walk
 from jaxleas.evaluation.refusal import load_refusal
-from jaxleas.evaluation.risk_dial import Guides, as_json, draw_dial, foresee, join, sweep
+from jaxleas.evaluation.risk_dial import Guides, as_json, foresee, join, sweep
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.guide.leas import leas
+from jaxleas.reports.risk_dial import draw_dial
 from jaxleas.surrogates import SurrogateForesight, write_surrogate
 from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.types import InputError

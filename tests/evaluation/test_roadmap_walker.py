@@ -3,7 +3,7 @@ import pytest
 
 from jaxleas.evaluation.exact import walker
 from jaxleas.evaluation.judge import path_lengths
-from jaxleas.evaluation.roadmap_walker import joined, roadmap_walker, stack
+from jaxleas.evaluation.roadmap_walker import roadmap_walker, stack
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import rb_kino
@@ -20,12 +20,6 @@ def line(first: float, last: float, count: int) -> GuidePath:
         np.zeros((count, 3)),
         np.ones(count, dtype=bool),
     )
-
-
-def test_legs_are_joined_without_standing_twice():
-    whole = joined([line(0.0, 1.0, 3), line(1.0, 3.0, 5)])
-    assert whole.time == pytest.approx(0.2 * np.arange(7))
-    assert whole.position[:, 0] == pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
 
 
 def test_paths_of_any_length_make_one_walk():

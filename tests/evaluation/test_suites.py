@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from jaxleas.evaluation import published
 from jaxleas.evaluation.suites import (
     MAX_SEED,
     MAX_STARTS,
@@ -12,6 +11,7 @@ from jaxleas.evaluation.suites import (
     make_suite,
     scene_seeds,
 )
+from jaxleas.reports import published
 from jaxleas.terrain.seeds import EVALUATION_SEED, HELD_OUT_SEED, MAX_TRAINING_SEED, TUNING_SEED
 from jaxleas.types import InputError
 

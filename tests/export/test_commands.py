@@ -3,11 +3,13 @@ import json
 import pytest
 
 from jaxleas.configuration.loading import to_yaml
+from jaxleas.envs.steering import TerrainConfig
 from jaxleas.export.commands import export
 from jaxleas.files import write_json, write_text
 from jaxleas.guide import load_policy
-from jaxleas.training.config import HeldOutConfig, RunConfig, TerrainConfig
+from jaxleas.training.config import HeldOutConfig
 from jaxleas.training.policy import write_policy
+from jaxleas.training.run_config import run_config_of
 from jaxleas.types import InputError
 from tests.guide.walkers import random_policy
 
@@ -17,7 +19,9 @@ POLICY = random_policy(seed=4)
 @pytest.fixture
 def run(tmp_path):
     """A run folder as training leaves it, as far as exporting is concerned."""
-    config = RunConfig(terrain=TerrainConfig(arenas=1), held_out=HeldOutConfig(arenas=2))
+    config = run_config_of("steering")(
+        terrain=TerrainConfig(arenas=1), held_out=HeldOutConfig(arenas=2)
+    )
     write_text(tmp_path / "run" / "config.yaml", to_yaml(config))
     write_json(tmp_path / "run" / "provenance.json", {"format": 1})
     write_policy(tmp_path / "run" / "policy.npz", POLICY)

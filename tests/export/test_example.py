@@ -13,8 +13,8 @@ import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
-from jaxleas.guide import leas, roll_out
-from jaxleas.guide.onnx_metadata import describe
+from jaxleas.export.write import described
+from jaxleas.guide import Trips, leas, roll_out
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
 from tests.guide.walkers import flat_map, random_policy, standing, waypoints_at
@@ -26,7 +26,7 @@ POLICY = random_policy(seed=4)
 @pytest.fixture
 def policy_file(tmp_path):
     file = tmp_path / "policy.onnx"
-    file.write_bytes(build_onnx(POLICY, describe(POLICY.config)))
+    file.write_bytes(build_onnx(POLICY, described(POLICY.config)))
     return file
 
 
@@ -66,15 +66,9 @@ def test_it_walks_where_the_roll_out_walks(policy_file, tmp_path):
     write_height_map(file, terrain)
 
     env = SteeringEnv(POLICY.config)
-    rollout = roll_out(
-        env,
-        make_atlas([terrain]),
-        [0],
-        leas(env, POLICY),
-        standing(env, [(-1.013, 0.517)]),
-        waypoints_at(env, (2, 1)),
-        60,
-    )
+    start = standing(env, [(-1.013, 0.517)])
+    trips = Trips(make_atlas([terrain]), [0], start, waypoints_at(env, (2, 1)))
+    rollout = roll_out(env, leas(env, POLICY), trips, 60)
     session = onnxruntime.InferenceSession(policy_file, providers=["CPUExecutionProvider"])
     start, goal = np.array([-1.013, 0.517]), np.array([2.0, 1.0])
     path = example.walk(session, example.height_map(file), start, goal, 60)

@@ -8,7 +8,7 @@ import numpy as np
 import onnx
 import pytest
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import Steering
 from jaxleas.envs.steering.layout import layout_named
 from jaxleas.export import (
     ExportError,
@@ -20,10 +20,12 @@ from jaxleas.export import (
     to_stablehlo,
     write,
 )
-from jaxleas.export.parity import LEAST_OBSERVATIONS, TOLERANCE, edge_cases
+from jaxleas.export.parity import TOLERANCE
+from jaxleas.export.recording import LEAST_OBSERVATIONS, edge_cases
+from jaxleas.export.write import described
 from jaxleas.guide import read_onnx_policy
-from jaxleas.guide.onnx_metadata import describe
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
+from jaxleas.training.networks.mlp import layers_of, params_of
 from jaxleas.types import InputError, JaxleasError
 from tests.envs.worlds import bumpy, height_map, world_of
 from tests.guide.walkers import random_policy
@@ -46,7 +48,7 @@ def observations_of(policy, count=LEAST_OBSERVATIONS, seed=0):
 def test_onnx_and_stablehlo_compute_what_the_policy_computes(activation, observation):
     policy = random_policy(1, activation, (32, 16, 8), observation=observation)
     observations = observations_of(policy)
-    onnx_file = build_onnx(policy, describe(policy.config))
+    onnx_file = build_onnx(policy, described(policy.config))
     differences = largest_difference(policy, onnx_file, to_stablehlo(policy), observations)
     assert set(differences) == {"onnxruntime", "stablehlo"}
     assert all(gap < 1e-6 for gap in differences.values())
@@ -55,10 +57,10 @@ def test_onnx_and_stablehlo_compute_what_the_policy_computes(activation, observa
 
 def test_commands_obey_the_limits_whatever_is_seen():
     policy = random_policy(2)
-    command = onnx_policy_from_bytes(build_onnx(policy, describe(policy.config)), "it")(
+    command = onnx_policy_from_bytes(build_onnx(policy, described(policy.config)), "it")(
         1e3 * observations_of(policy, 1000)
     )
-    limits = policy.limits
+    limits = policy.config.limits
     length = np.linalg.norm(command[:, :3], axis=1)
     assert length.max() <= limits.max_acceleration * (1 + 1e-6)
     assert length.max() > 0.99 * limits.max_acceleration
@@ -69,7 +71,7 @@ def test_a_policy_without_hidden_layers_is_exported_too():
     policy = random_policy(3, hidden=())
     differences = largest_difference(
         policy,
-        build_onnx(policy, describe(policy.config)),
+        build_onnx(policy, described(policy.config)),
         to_stablehlo(policy),
         observations_of(policy),
     )
@@ -112,8 +114,8 @@ def test_the_onnx_file_says_all_a_driver_needs(exported):
     assert told["observation"]["rows"] == list(layout.rows)
     assert told["observation"]["columns"] == list(layout.columns)
     assert told["observation"]["height_clip"] == [-1.4, -0.2]
-    assert told["command"]["max_acceleration"] == policy.limits.max_acceleration
-    assert told["command"]["time_step"] == policy.limits.time_step
+    assert told["command"]["max_acceleration"] == policy.config.limits.max_acceleration
+    assert told["command"]["time_step"] == policy.config.limits.time_step
     assert told["robot"] == "talos"
     assert told["training_config"] == "seed: 3\n"
     assert told["success"] == [{"name": "rubble", "reached": 1.0}]
@@ -140,8 +142,9 @@ def test_what_was_written_is_read_back_as_the_same_policy(exported):
 def test_a_sabotaged_artifact_is_refused_and_nothing_is_written(tmp_path, monkeypatch, artifact):
     policy = random_policy(6)
     honest = getattr(write, artifact)
-    bias = policy.biases[-1].at[0].add(2e-3)  # about 1e-4 m/s^2
-    perturbed = replace(policy, biases=(*policy.biases[:-1], bias))
+    *inner, (kernel, bias) = layers_of(policy.params)
+    bias = bias.at[0].add(2e-3)  # about 1e-4 m/s^2
+    perturbed = replace(policy, params=params_of([*inner, (kernel, bias)]))
     monkeypatch.setattr(write, artifact, lambda policy, *rest: honest(perturbed, *rest))
     with pytest.raises(ExportError, match="nothing was written"):
         export_policy(policy, tmp_path / "out", observations_of(policy))
@@ -186,19 +189,19 @@ def test_what_is_no_stablehlo_is_refused(tmp_path, content):
 
 def test_recorded_observations_are_what_a_walking_robot_sees():
     policy = random_policy(4)
-    env = SteeringEnv(policy.config)
+    task = Steering(policy.config)
     world = world_of(height_map(bumpy, half_size=3.0))
     key = jax.random.key(0)
-    recorded = record_observations(policy, env, world, key, robots=64, steps=100)
+    recorded = record_observations(policy, task, world, key, robots=64, steps=100)
     walked = recorded[: -len(edge_cases(policy))]
     assert len(walked) >= LEAST_OBSERVATIONS
     assert np.isfinite(recorded).all()
     speed = np.linalg.norm(walked[:, :3], axis=1)
-    assert speed.max() <= policy.limits.max_speed + 1e-6
+    assert speed.max() <= policy.config.limits.max_speed + 1e-6
     assert speed.max() > 0.05
     assert np.abs(walked[:, 3]).max() <= np.pi + 1e-6
     assert walked[:, 4:].min() >= -1.4
     assert walked[:, 4:].max() <= -0.2
     assert np.unique(walked.round(4), axis=0).shape[0] >= LEAST_OBSERVATIONS  # distinct ones
-    again = record_observations(policy, env, world, key, robots=64, steps=100)
+    again = record_observations(policy, task, world, key, robots=64, steps=100)
     np.testing.assert_array_equal(recorded, again)

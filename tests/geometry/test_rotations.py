@@ -1,9 +1,19 @@
+import math
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from jaxleas.geometry import rotate_by_yaw, rotate_to_root, rotate_to_world, wrap_angle
+from jaxleas.geometry import (
+    rotate_by_yaw,
+    rotate_to_root,
+    rotate_to_world,
+    wrap_angle,
+    wrap_angle_on_host,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -60,3 +70,43 @@ def test_wrapped_angles_point_the_same_way_and_stay_in_range(yaws):
 
 def test_half_a_turn_is_minus_pi():
     np.testing.assert_allclose(wrap_angle(jnp.array([np.pi, -np.pi])), -np.pi, atol=1e-6)
+
+
+WRAPS = pytest.mark.parametrize(
+    ("wrap", "digits"), [(wrap_angle, 1e-4), (wrap_angle_on_host, 1e-9)]
+)
+ANGLES = st.floats(-100.0, 100.0)
+
+
+def apart(left, right):
+    """Return how far apart two headings are, the shorter way round."""
+    return abs(math.remainder(float(left) - float(right), 2 * math.pi))
+
+
+@WRAPS
+@given(angle=ANGLES, turns=st.integers(-20, 20))
+def test_wrapping_is_periodic(wrap, digits, angle, turns):
+    assert apart(wrap(angle + 2 * np.pi * turns), wrap(angle)) < digits
+
+
+@WRAPS
+@given(angle=ANGLES)
+def test_wrapping_is_odd_except_at_half_a_turn(wrap, digits, angle):
+    wrapped = float(wrap(angle))
+    if abs(abs(wrapped) - np.pi) > digits:
+        assert float(wrap(-angle)) == pytest.approx(-wrapped, abs=digits)
+    assert wrap(np.pi) == pytest.approx(-np.pi, abs=1e-6)
+    assert wrap(-np.pi) == pytest.approx(-np.pi, abs=1e-6)
+
+
+@WRAPS
+@given(angle=ANGLES)
+def test_wrapping_keeps_the_heading_and_stays_in_range(wrap, digits, angle):
+    assert -np.pi - 1e-6 <= float(wrap(angle)) < np.pi
+    assert apart(wrap(angle), angle) < digits
+
+
+@given(st.floats(-1e-14, 1e-14))
+def test_rounding_does_not_lead_out_of_range_on_the_host(little):
+    for angle in (np.pi + little, -np.pi + little, np.nextafter(-np.pi, -4.0)):
+        assert -np.pi <= wrap_angle_on_host(angle) < np.pi

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from jaxleas.export import build_onnx
+from jaxleas.export.write import described
 from jaxleas.files import write_json
 from jaxleas.guide import load_policy, read_guide_paths
 from jaxleas.guide.commands import rollout
-from jaxleas.guide.onnx_metadata import describe
 from jaxleas.terrain import write_height_map
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
@@ -26,7 +26,7 @@ QUERIES = [
 def files(tmp_path):
     """Everything a roll-out is given."""
     write_policy(tmp_path / "policy.npz", POLICY)
-    (tmp_path / "policy.onnx").write_bytes(build_onnx(POLICY, describe(POLICY.config)))
+    (tmp_path / "policy.onnx").write_bytes(build_onnx(POLICY, described(POLICY.config)))
     write_height_map(tmp_path / "map.npz", flat_map())
     (tmp_path / "queries.json").write_text(json.dumps(QUERIES))
     return {

@@ -8,8 +8,8 @@ import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
-from jaxleas.guide import leas, load_policy, read_onnx_policy, roll_out
-from jaxleas.guide.onnx_metadata import describe
+from jaxleas.export.write import described
+from jaxleas.guide import Trips, leas, load_policy, read_onnx_policy, roll_out
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError
 from tests.guide.walkers import random_policy, small_arena, starts_on_links
@@ -19,7 +19,7 @@ POLICY = random_policy(seed=4)
 
 @pytest.fixture(scope="module")
 def content():
-    return build_onnx(POLICY, describe(POLICY.config))
+    return build_onnx(POLICY, described(POLICY.config))
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_driven_from_the_host_it_walks_as_on_the_device(file):
     start, waypoints = starts_on_links(env, arena, terrain, 16, seed=5)
     index, atlas = jnp.zeros(16, jnp.int32), make_atlas([terrain])
     here, there = (
-        roll_out(env, atlas, index, leas(env, policy), start, waypoints, 40)
+        roll_out(env, leas(env, policy), Trips(atlas, index, start, waypoints), 40)
         for policy in (read_onnx_policy(file), POLICY)
     )
     np.testing.assert_array_equal(here.end, there.end)
@@ -97,7 +97,7 @@ def test_another_layout_or_format_is_refused(tmp_path, content, key, change, say
 def test_a_network_of_another_size_is_refused(tmp_path):
     other = random_policy(observation="icra81")
     path = tmp_path / "other.onnx"
-    path.write_bytes(build_onnx(other, describe(POLICY.config)))
+    path.write_bytes(build_onnx(other, described(POLICY.config)))
     with pytest.raises(InputError, match=r"takes observation \[batch, 144\]"):
         read_onnx_policy(path)
 

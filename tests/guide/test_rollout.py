@@ -5,7 +5,7 @@ import pytest
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.guide import leas, paths, rb_lin, roll_out
+from jaxleas.guide import Trips, leas, paths, rb_lin, roll_out
 from jaxleas.terrain import HeightMap
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError, RootMotion
@@ -44,9 +44,8 @@ def walked():
     arena, terrain = small_arena()
     start, waypoints = starts_on_links(env, arena, terrain, COUNT)
     index = jnp.zeros(COUNT, jnp.int32)
-    rollout = roll_out(
-        env, make_atlas([terrain]), index, leas(env, policy), start, waypoints, STEPS
-    )
+    trips = Trips(make_atlas([terrain]), index, start, waypoints)
+    rollout = roll_out(env, leas(env, policy), trips, STEPS)
     return policy, env, terrain, waypoints, jax.tree.map(np.asarray, rollout)
 
 
@@ -117,9 +116,8 @@ def test_more_steps_only_lengthen_what_stopped(walked):
         jnp.asarray(rollout.yaw[:, 0]),
     )
     index = jnp.zeros(COUNT, jnp.int32)
-    short = roll_out(
-        env, make_atlas([terrain]), index, leas(env, policy), start, waypoints, STEPS // 3
-    )
+    trips = Trips(make_atlas([terrain]), index, start, waypoints)
+    short = roll_out(env, leas(env, policy), trips, STEPS // 3)
     end = np.asarray(short.end)
     np.testing.assert_array_equal(end, np.minimum(rollout.end, STEPS // 3))
     np.testing.assert_allclose(
@@ -131,7 +129,7 @@ def test_more_steps_only_lengthen_what_stopped(walked):
 
 def test_one_who_stands_has_stopped(env, level):
     start = standing(env, [(0, 0)])
-    rollout = roll_out(env, level, [0], stand, start, waypoints_at(env, (2, 0)), 10)
+    rollout = roll_out(env, stand, Trips(level, [0], start, waypoints_at(env, (2, 0))), 10)
     assert bool(rollout.stopped[0])
     assert int(rollout.end[0]) == 10
     (path,) = paths(rollout, 0.2)
@@ -141,7 +139,7 @@ def test_one_who_stands_has_stopped(env, level):
 
 def test_one_who_starts_at_the_goal_has_reached_it(env, level):
     start = standing(env, [(1.9, 0)])
-    rollout = roll_out(env, level, [0], stand, start, waypoints_at(env, (2, 0)), 10)
+    rollout = roll_out(env, stand, Trips(level, [0], start, waypoints_at(env, (2, 0))), 10)
     assert bool(rollout.reached[0])
     assert int(rollout.end[0]) == 0
 
@@ -150,7 +148,9 @@ def test_an_invalid_start_is_a_path_of_one_invalid_configuration(env):
     hole = HeightMap(np.full((9, 9), np.nan, np.float32), 0.1, (-0.4, -0.4))
     start = standing(env, [(0, 0)])
     # At the goal, too: where both hold, invalid counts.
-    rollout = roll_out(env, make_atlas([hole]), [0], stand, start, waypoints_at(env, (0, 0)), 10)
+    rollout = roll_out(
+        env, stand, Trips(make_atlas([hole]), [0], start, waypoints_at(env, (0, 0))), 10
+    )
     assert bool(rollout.invalid[0])
     assert not bool(rollout.reached[0])
     (path,) = paths(rollout, 0.2)
@@ -161,7 +161,7 @@ def test_waypoints_are_visited_one_after_another(env, level):
     corners = [(1.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]
     start = standing(env, [(0, 0)])
     method = rb_lin(env.config.limits, 0.1)
-    rollout = roll_out(env, level, [0], method, start, waypoints_at(env, *corners), 800)
+    rollout = roll_out(env, method, Trips(level, [0], start, waypoints_at(env, *corners)), 800)
     assert bool(rollout.reached[0])
     (path,) = paths(rollout, 0.2)
     visits = [
@@ -178,7 +178,7 @@ def test_every_robot_walks_on_its_own_map(env):
     high = HeightMap(high.heights + 1.0, high.resolution, high.origin)
     start = standing(env, [(0, 0), (0, 0)])
     goal = jnp.concatenate([waypoints_at(env, (1, 0))] * 2)
-    rollout = roll_out(env, make_atlas([low, high]), [0, 1], stand, start, goal, 5)
+    rollout = roll_out(env, stand, Trips(make_atlas([low, high]), [0, 1], start, goal), 5)
     assert np.asarray(rollout.invalid).tolist() == [False, True]
 
 
@@ -190,7 +190,7 @@ def test_it_stops_computing_when_nobody_walks(env, level):
         return rb_lin(env.config.limits, 0.1)(heights_in_root, motion, goal)
 
     start = standing(env, [(0, 0)])
-    rollout = roll_out(env, level, [0], counted, start, waypoints_at(env, (1.01, 0)), 5000)
+    rollout = roll_out(env, counted, Trips(level, [0], start, waypoints_at(env, (1.01, 0))), 5000)
     jax.effects_barrier()
     assert int(rollout.end[0]) == 41
     assert len(calls) <= 43
@@ -208,7 +208,8 @@ def test_it_compiles_once_for_new_weights_starts_and_goals(level):
     for seed in range(3):
         start = standing(env, [(0.1 * seed, 0)], yaw=0.1 * seed)
         method = leas(env, random_policy(seed))
-        roll_out(env, level, [0], method, start, waypoints_at(env, (2, seed)), 7, 0.1 + seed)
+        trips = Trips(level, [0], start, waypoints_at(env, (2, seed)))
+        roll_out(env, method, trips, 7, 0.1 + seed)
         if seed == 0:
             traced = env.observed
     assert env.observed == traced > 0
@@ -219,8 +220,9 @@ def test_it_compiles_once_for_new_weights_starts_and_goals(level):
     [((1, 1, 2), 5), ((1, 0, 3), 5), ((0, 1, 3), 5), ((1, 3), 5), ((1, 1, 3), 0)],
 )
 def test_nonsense_is_refused(env, level, shape, steps):
+    trips = Trips(level, [0], standing(env, [(0, 0)]), jnp.zeros(shape))
     with pytest.raises(InputError, match="roll-out"):
-        roll_out(env, level, [0], stand, standing(env, [(0, 0)]), jnp.zeros(shape), steps)
+        roll_out(env, stand, trips, steps)
 
 
 def test_an_environment_of_another_layout_is_refused():

@@ -8,9 +8,10 @@ import numpy as np
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import layout_named
-from jaxleas.envs.steering.observation import affine_scaling
+from jaxleas.envs.steering.scaling import affine_scaling
 from jaxleas.terrain import GeneratorConfig, HeightMap, generate_arena, rasterise
-from jaxleas.training.policy import SteeringPolicy
+from jaxleas.training.networks.mlp import Mlp, params_of
+from jaxleas.training.policy import Policy
 from jaxleas.types import RootMotion
 
 
@@ -25,12 +26,17 @@ def random_policy(seed: int = 0, activation: str = "relu", hidden=(16, 12), **ta
     )
     kernels = [rng.normal(size=pair) / np.sqrt(pair[0]) for pair in pairwise(sizes)]
     kernels[-1][:, 2] *= 0.05  # up and down is where a random policy fails first
-    return SteeringPolicy(
+    lengths = iter(sizes[1:])
+
+    def bias():
+        return jnp.asarray(rng.normal(size=next(lengths)) * 0.1, jnp.float32)
+
+    return Policy(
         mean=jnp.asarray(mean),
         deviation=jnp.asarray(deviation),
-        kernels=tuple(jnp.asarray(each, jnp.float32) for each in kernels),
-        biases=tuple(jnp.asarray(rng.normal(size=each) * 0.1, jnp.float32) for each in sizes[1:]),
-        activation=activation,
+        params=params_of([(jnp.asarray(each, jnp.float32), bias()) for each in kernels]),
+        network=Mlp(size, tuple(hidden), 8, activation),
+        signature=config.signature(),
         config=config,
     )
 
@@ -38,11 +44,11 @@ def random_policy(seed: int = 0, activation: str = "relu", hidden=(16, 12), **ta
 def homing_policy(speed: float = 0.1, **task):
     """A policy without hidden layers that turns to the goal and walks there, seeing no terrain."""
     policy = random_policy(hidden=(), **task)
-    kernel, bias = np.zeros(policy.kernels[0].shape, np.float32), np.zeros(8, np.float32)
+    kernel, bias = np.zeros((len(policy.mean), 8), np.float32), np.zeros(8, np.float32)
     kernel[[0, 1, 2], [0, 1, 2]] = -4.0  # velocities are damped
     kernel[3, 3] = 4.0
     bias[0] = 4.0 * speed / policy.config.limits.max_speed
-    return policy.replace(kernels=(jnp.asarray(kernel),), biases=(jnp.asarray(bias),))
+    return policy.replace(params=params_of([(jnp.asarray(kernel), jnp.asarray(bias))]))
 
 
 def flat_map(half_size: float = 4.0, resolution: float = 0.1) -> HeightMap:

@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from jaxleas.contacts import PlannerError, plan_mip, problem_from_guide
 from jaxleas.contacts.from_guide import NoGroundError, kept_configurations
-from jaxleas.contacts.programs import judging, mip
+from jaxleas.contacts.programs import mip
 from jaxleas.labels import MipSettings, Sl1mSettings, judge, judge_over
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
@@ -44,7 +43,7 @@ def test_the_last_index_is_the_last_prefix_that_has_a_plan(planner):
     kept = kept_configurations(len(path), 14)
     made = -1
     for phases in range(1, len(kept)):
-        beginning = judging._rows(path, np.arange(kept[phases - 1] + 1))
+        beginning = path[: kept[phases - 1] + 1]
         try:
             problem = problem_from_guide(beginning, scene)
         except NoGroundError:
@@ -81,7 +80,7 @@ def test_where_the_scene_ends_the_verdict_ends():
 
 @BOTH
 def test_a_path_of_one_configuration_only_has_to_stand(planner):
-    here = judging._rows(straight(1.0), np.array([0]))
+    here = straight(1.0)[:1]
     (verdict,) = judge(planner, flat(), [here])
     assert (verdict.success, verdict.last_index, verdict.steps) == (True, 0, 0)
     beside = replace(here, position=here.position + 50.0)

@@ -7,7 +7,7 @@ from jaxleas.configuration.loading import to_yaml
 from jaxleas.evaluation.result_file import CellResult, Evaluation, write_evaluation
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.runs.folder import RunFolder
-from jaxleas.training.config import RunConfig
+from jaxleas.training.run_config import run_config_of
 
 STARTS = 200
 PPO = {"steps": 8000, "environments": 50, "unroll": 20, "minibatches": 2}
@@ -15,7 +15,9 @@ PPO = {"steps": 8000, "environments": 50, "unroll": 20, "minibatches": 2}
 
 def make_run(path: Path, updates: int = 8, reached: float = 0.9, **config) -> Path:
     """Write a run of 1000 steps an update that examined every second one."""
-    settled = RunConfig.model_validate({"ppo": PPO | config.pop("ppo", {}), **config})
+    settled = run_config_of("steering").model_validate(
+        {"ppo": PPO | config.pop("ppo", {}), **config}
+    )
     with RunFolder.create(path, to_yaml(settled), ["train.py", "configs/leas_p1.yaml"]):
         rows = [
             {"step": 1000 * n, "seconds": 10.0 * n, "walk/reward": 0.1 * n}

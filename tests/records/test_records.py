@@ -1,6 +1,9 @@
 """Runs as their folders tell them, whole, half-written, foreign or at work."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -41,6 +44,26 @@ def test_states(tmp_path: Path) -> None:
     assert read_record(short).state == "interrupted"
     (short / "config.yaml").unlink()
     assert read_record(short).state == "damaged"
+
+
+def test_a_run_that_lives_elsewhere_is_not_called_interrupted(tmp_path: Path) -> None:
+    """Held by another process, or by another machine whose file system passes no locks on."""
+    run = make_run(tmp_path / "a", updates=5)
+    code = (
+        "import sys, time; from jaxleas.runs.folder import RunFolder\n"
+        "run = RunFolder.open(sys.argv[1], writing=True, needs_checkpoint=False)\n"
+        "print('held', flush=True); time.sleep(60)"
+    )
+    with subprocess.Popen([sys.executable, "-c", code, run], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        assert read_record(run).state == "running"
+        process.kill()
+    assert read_record(run).state == "interrupted"
+    (run / "lock").write_text(json.dumps({"process": 77, "host": "node7"}))
+    assert read_record(run).state == "running"
+    os.utime(run / "lock", (0, 0))
+    assert read_record(run).state == "interrupted"
 
 
 def test_a_training_that_begins_is_running_not_damaged(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from jaxleas.files import write_json
+from jaxleas.files import InUseError, write_json
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
 from jaxleas.sweeps.job import LIFELINE, Outcome, outcome_file, patiently, write_job
@@ -218,6 +218,17 @@ def test_a_job_waits_for_a_worker_that_is_about_to_let_go(tmp_path):
     with pytest.raises(InputError, match="in use"):
         patiently(lambda where: hold_run_folder(Path(where), tiny(), ["test"]), path, 0.0)
     held.close()
+
+
+def test_what_a_job_waits_for_is_no_matter_of_words(tmp_path):
+    errors = [InputError("the key is in use by nothing"), InUseError("besetzt")]
+
+    def do(path):
+        raise errors.pop()
+
+    with pytest.raises(InputError, match="the key"):
+        patiently(do, tmp_path)
+    assert not errors  # waited for the one, and not for the other
 
 
 def test_a_run_folder_whose_making_was_cut_short_is_made_again(tmp_path):

@@ -35,7 +35,7 @@ OTHER = {
     "ppo.value_weight": 0.7,
     "ppo.reward_scale": 0.3,
     "ppo.max_gradient_norm": 0.6,
-    "ppo.final_failure": 33.3,
+    "env.reward.final_failure": 33.3,
     "env.reward.direction": 2.0,
     "env.reward.orientation": 0.3,
     "env.reward.turn": 0.2,

@@ -5,9 +5,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.terrain.atlas import VOID, make_atlas
+from jaxleas.conditions import VOID_IN_ROOT
+from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError
+from jaxleas.types import NO_GROUND, InputError, is_ground
 from jaxleas.xla.huge_pages import hold_in_huge_pages
 
 
@@ -31,13 +32,29 @@ def test_sampling_equals_the_slow_twin_on_every_map():
         points = points[inside_a_cell]
         expected = each.height_at(points)
         sampled = atlas.height_at(jnp.int32(index), jnp.asarray(points, jnp.float32))
-        np.testing.assert_array_equal(sampled, np.where(np.isnan(expected), VOID, expected))
+        np.testing.assert_array_equal(sampled, np.where(np.isnan(expected), NO_GROUND, expected))
+
+
+def test_ground_is_where_the_height_map_has_some_on_the_host_and_on_the_device():
+    each = random_map(3, (12, 9), (0.0, 0.0))
+    rows, columns = np.mgrid[0:12, 0:9]
+    points = np.stack([columns, rows], axis=-1).reshape(-1, 2) * each.resolution
+    on_device = make_atlas([each]).height_at(jnp.int32(0), jnp.asarray(points, jnp.float32))
+    there = is_ground(each.height_at(points))
+    assert 0 < there.sum() < len(there)
+    np.testing.assert_array_equal(there, ~np.isnan(each.heights.ravel()))
+    np.testing.assert_array_equal(is_ground(on_device), there)
+
+
+def test_without_ground_a_condition_sees_less_than_its_bound_from_every_root():
+    for z in (-1000.0, 0.0, 9000.0):
+        assert NO_GROUND - z < VOID_IN_ROOT
 
 
 def test_far_away_there_is_no_ground():
     atlas = make_atlas([random_map(0, (5, 5), (0.0, 0.0))])
     far = jnp.array([[1e6, 0.0], [-1e6, 3.0], [0.2, 1e9], [1e9, -1e9]])
-    np.testing.assert_array_equal(atlas.height_at(jnp.int32(0), far), VOID)
+    np.testing.assert_array_equal(atlas.height_at(jnp.int32(0), far), NO_GROUND)
 
 
 def test_maps_of_different_resolution_are_refused():

@@ -6,15 +6,18 @@ import sys
 from pathlib import Path
 
 from benchmarks.tiny import tiny_training
+from jaxleas.envs.steering import SteeringConfig, TerrainConfig
 from jaxleas.training.config import RunConfig
+
+SteeringRun = RunConfig[SteeringConfig, TerrainConfig]
 
 ROOT = Path(__file__).resolve().parents[2]
 
 TINY = tiny_training()
 
 
-def tiny(**ppo) -> RunConfig:
-    return RunConfig.model_validate(TINY | {"ppo": TINY["ppo"] | ppo})
+def tiny(**ppo) -> SteeringRun:
+    return SteeringRun.model_validate(TINY | {"ppo": TINY["ppo"] | ppo})
 
 
 def environment(devices: int) -> dict[str, str]:

@@ -8,9 +8,11 @@ import pytest
 from jax.flatten_util import ravel_pytree
 
 from jaxleas.training.adam import descend
-from jaxleas.training.config import PpoConfig, RunConfig
+from jaxleas.training.config import PpoConfig
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import learning_rate, make_optimiser
+
+from .runs import SteeringRun
 
 WEIGHTS = {"kernel": jnp.ones((5, 3)), "bias": jnp.zeros(3)}
 
@@ -18,7 +20,7 @@ WEIGHTS = {"kernel": jnp.ones((5, 3)), "bias": jnp.zeros(3)}
 @pytest.mark.parametrize("longest", [0.5, 100.0])  # shortened always, never
 def test_steps_are_those_of_optax(longest):
     config = PpoConfig(steps=128, environments=16, unroll=1, minibatches=2, epochs=1)
-    numbers = PpoParams.of(RunConfig(ppo=config)).replace(max_gradient_norm=longest)
+    numbers = PpoParams.of(SteeringRun(ppo=config)).replace(max_gradient_norm=longest)
     optimiser = make_optimiser(config, numbers)
     state = expected_state = optimiser.init(WEIGHTS)
     weights = expected = WEIGHTS

@@ -32,7 +32,7 @@ def test_the_host_waits_before_it_is_too_far_ahead(monkeypatch):
         held_out=None,
         train_step=step,
         examine=lambda *_: {"held_out/reached": 0.0},
-        devices=SimpleNamespace(gather=lambda state: state),
+        gather=lambda state: state,
     )
     state = SimpleNamespace(update=0, normaliser=None, averaged=None)
     interruption = SimpleNamespace(requested=False)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from jaxleas.configuration.loading import load_config, to_yaml
-from jaxleas.training.config import RunConfig
+from jaxleas.configuration.loading import to_yaml
+from jaxleas.training.run_config import load_run_config, make_task
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
 
@@ -15,9 +15,9 @@ CONFIGS = sorted(set((ROOT / "configs").glob("*.yaml")) - set((ROOT / "configs")
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
 def test_it_loads_and_its_resolved_form_means_the_same(path, tmp_path):
-    config = load_config(RunConfig, path)
+    config = load_run_config(path)
     (tmp_path / "resolved.yaml").write_text(to_yaml(config))
-    assert load_config(RunConfig, tmp_path / "resolved.yaml") == config
+    assert load_run_config(tmp_path / "resolved.yaml") == config
 
 
 @pytest.mark.parametrize(
@@ -38,7 +38,7 @@ def test_it_loads_and_its_resolved_form_means_the_same(path, tmp_path):
 )
 def test_what_cannot_be_is_refused_by_name(overrides, said):
     with pytest.raises(InputError) as refusal:
-        load_config(RunConfig, ROOT / "configs" / "leas_p1.yaml", overrides)
+        load_run_config(ROOT / "configs" / "leas_p1.yaml", overrides)
     assert said in str(refusal.value)
 
 
@@ -46,4 +46,4 @@ def test_training_terrain_never_reaches_into_the_seeds_of_evaluation():
     config = tiny()
     terrain = config.terrain.model_copy(update={"first_seed": 900_000})
     with pytest.raises(InputError, match="kept for evaluation"):
-        training_world(config.model_copy(update={"terrain": terrain}))
+        training_world(config.model_copy(update={"terrain": terrain}), make_task(config))

@@ -25,14 +25,15 @@ import json, sys
 import jax
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.training.devices import choose_devices
-from jaxleas.training.loop import Trainer
+from jaxleas.training.run_config import make_task
+from jaxleas.training.trainer import Trainer
 from tests.training.runs import tiny
 
 config = tiny()
 
 class Site:
     def __init__(self, count):
-        self.trainer = Trainer(config, devices=choose_devices(count, config.ppo))
+        self.trainer = Trainer(config, make_task(config), choose_devices(count, config.ppo))
         self.like = jax.eval_shape(self.trainer.fresh_state)
         fresh = self.trainer.fresh_state()
         self.step = self.trainer.train_step.lower(self.trainer.world, fresh).compile()

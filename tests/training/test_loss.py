@@ -5,41 +5,61 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
-from jaxleas.training.brax_blocks import Transition, compute_ppo_loss
-from jaxleas.training.config import NetworkConfig, RunConfig
-from jaxleas.training.loss import Experience, action_distribution, advantages, ppo_loss
-from jaxleas.training.networks import dense, initial_normaliser, make_networks, normalise
+from jaxleas.envs.steering import SteeringConfig
+from jaxleas.training.brax_blocks import (
+    ACTIVATION,
+    Transition,
+    compute_ppo_loss,
+    make_ppo_networks,
+)
+from jaxleas.training.config import NetworkConfig
+from jaxleas.training.loss import Experience, advantages, ppo_loss
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import fresh_networks
+
+from .runs import SteeringRun
 
 pytestmark = pytest.mark.usefixtures("brax_ranks")
 
 TIME, ROBOTS = 7, 12
 SAMPLES = (TIME, ROBOTS)
+SIGNATURE = SteeringConfig().signature()
 
 
-def walked(env, networks, params, normaliser, seed):
+def brax_networks(config):
+    """Return Brax's own networks of the same sizes."""
+    return make_ppo_networks(
+        observation_size=SIGNATURE.size,
+        action_size=SIGNATURE.action_size,
+        preprocess_observations_fn=normalise,
+        policy_hidden_layer_sizes=config.hidden,
+        value_hidden_layer_sizes=config.hidden,
+        activation=ACTIVATION[config.activation],
+    )
+
+
+def walked(networks, params, normaliser, seed):
     """Return a batch, walked by a policy a little other than `params`, in both forms."""
     keys = jax.random.split(jax.random.key(seed), 3)
     observation, last = (
-        jax.random.uniform(key, (*shape, env.layout.size), minval=-1.0)
+        jax.random.uniform(key, (*shape, SIGNATURE.size), minval=-1.0)
         for key, shape in zip(keys, (SAMPLES, (ROBOTS,)), strict=False)
     )
     walker = jax.tree.map(
         lambda leaf: 1.1 * leaf + 0.02 * jax.random.normal(keys[2], leaf.shape), params.policy
     )
     logits = networks.policy_network.apply(normaliser, walker, observation)
-    location, deviation = action_distribution(logits)
-    raw = location + deviation * jax.random.normal(jax.random.key(seed + 1), location.shape)
+    distributions = SIGNATURE.distributions(logits)
+    noise = SIGNATURE.draw_noise(jax.random.key(seed + 1), SAMPLES)
+    raw = SIGNATURE.sample(distributions, noise)
     ends = np.random.default_rng(seed).choice(3, SAMPLES, p=[0.6, 0.2, 0.2])
     terminated, truncated = (jnp.asarray(ends == kind, jnp.float32) for kind in (1, 2))
     reward = jax.random.normal(jax.random.key(seed + 2), SAMPLES)
     ours = Experience(
         observation=normalise(observation, normaliser),
         raw_action=raw,
-        location=location,
-        deviation=deviation,
+        distributions=distributions,
         reward=reward,
         terminated=terminated,
         truncated=truncated,
@@ -70,17 +90,17 @@ def walked(env, networks, params, normaliser, seed):
 @pytest.mark.parametrize("seed", [0, 1, 2])
 @pytest.mark.parametrize("activation", ["relu", "swish"])
 def test_values_and_gradients_are_those_of_brax(seed, activation):
-    config = RunConfig(
+    config = SteeringRun(
         network=NetworkConfig(hidden=(24, 16), activation=activation),
     )
     numbers = PpoParams.of(config)
-    env = SteeringEnv(SteeringConfig())
-    networks = make_networks(config.network, env)
-    normaliser = initial_normaliser(config.network, env)
-    params = fresh_networks(networks, *jax.random.split(jax.random.key(seed)))
-    ours, last, theirs = walked(env, networks, params, normaliser, seed)
+    networks = brax_networks(config.network)
+    normaliser = initial_normaliser(config.network, SIGNATURE)
+    mine = make_networks(config.network, SIGNATURE)
+    params = mine.init(*jax.random.split(jax.random.key(seed)))
+    ours, last, theirs = walked(networks, params, normaliser, seed)
     key = jax.random.key(9)
-    noise = jax.random.normal(key, (*SAMPLES, 4))
+    noise = (jax.random.normal(key, (*SAMPLES, 4)),)
 
     def brax(params):
         return compute_ppo_loss(
@@ -98,7 +118,7 @@ def test_values_and_gradients_are_those_of_brax(seed, activation):
         )
 
     (_, metrics), gradient = jax.value_and_grad(ppo_loss, has_aux=True)(
-        params, ours, last, noise, numbers, config.network
+        params, ours, last, noise, numbers, mine
     )
     (_, expected), expected_gradient = jax.value_and_grad(brax, has_aux=True)(params)
     assert metrics.keys() == expected.keys()
@@ -106,28 +126,28 @@ def test_values_and_gradients_are_those_of_brax(seed, activation):
         # Brax adds 1e-5 inside the logarithm of its divergence.
         loose = 1e-3 if name == "kl_mean" else 2e-6
         np.testing.assert_allclose(metrics[name], value, rtol=2e-5, atol=loose, err_msg=name)
-    for mine, theirs_ in zip(
+    for each, theirs_ in zip(
         jax.tree.leaves(gradient), jax.tree.leaves(expected_gradient), strict=True
     ):
         scale = float(jnp.max(jnp.abs(theirs_)))
         assert scale > 0.0
-        np.testing.assert_allclose(mine, theirs_, rtol=0, atol=2e-5 * scale)
+        np.testing.assert_allclose(each, theirs_, rtol=0, atol=2e-5 * scale)
 
 
 def test_products_in_bfloat16_give_nearly_the_same_gradient():
-    env = SteeringEnv(SteeringConfig())
-    config = RunConfig()
-    networks = make_networks(config.network, env)
-    normaliser = initial_normaliser(config.network, env)
-    params = fresh_networks(networks, *jax.random.split(jax.random.key(0)))
-    ours, last, _ = walked(env, networks, params, normaliser, 0)
-    noise = jax.random.normal(jax.random.key(9), (*SAMPLES, 4))
+    config = SteeringRun()
+    normaliser = initial_normaliser(config.network, SIGNATURE)
+    networks = make_networks(config.network, SIGNATURE)
+    params = networks.init(*jax.random.split(jax.random.key(0)))
+    ours, last, _ = walked(brax_networks(config.network), params, normaliser, 0)
+    noise = (jax.random.normal(jax.random.key(9), (*SAMPLES, 4)),)
 
     def gradient(products):
         network = config.network.model_copy(update={"products": products})
+        networks = make_networks(network, SIGNATURE)
         rows = ours.replace(observation=ours.observation.astype(products))
         return jax.grad(ppo_loss, has_aux=True)(
-            params, rows, last.astype(products), noise, PpoParams.of(config), network
+            params, rows, last.astype(products), noise, PpoParams.of(config), networks
         )[0]
 
     exact, rough = gradient("float32"), gradient("bfloat16")
@@ -140,18 +160,19 @@ def test_products_in_bfloat16_give_nearly_the_same_gradient():
 
 def test_networks_answer_as_brax_networks_do():
     config = NetworkConfig()
-    env = SteeringEnv(SteeringConfig())
-    networks = make_networks(config, env)
-    normaliser = initial_normaliser(config, env)
-    params = fresh_networks(networks, *jax.random.split(jax.random.key(0)))
-    observation = jax.random.normal(jax.random.key(1), (5, 3, env.layout.size))
+    brax, networks = brax_networks(config), make_networks(config, SIGNATURE)
+    normaliser = initial_normaliser(config, SIGNATURE)
+    policy_key, value_key = jax.random.split(jax.random.key(0))
+    params = networks.init(policy_key, value_key)
+    theirs = brax.policy_network.init(policy_key), brax.value_network.init(value_key)
+    jax.tree.map(np.testing.assert_array_equal, (params.policy, params.value), theirs)
+    observation = jax.random.normal(jax.random.key(1), (5, 3, SIGNATURE.size))
     normalised = normalise(observation, normaliser)
-    for network, weights in ((networks.policy_network, params.policy),):
-        np.testing.assert_allclose(
-            dense(weights, normalised, config),
-            network.apply(normaliser, weights, observation),
-            atol=1e-5,
-        )
+    expected = brax.policy_network.apply(normaliser, params.policy, observation)
+    for answer in (networks.answer, networks.judged):
+        np.testing.assert_allclose(answer(params.policy, normalised), expected, atol=1e-5)
+    values = brax.value_network.apply(normaliser, params.value, observation)
+    np.testing.assert_allclose(networks.values(params.value, normalised), values, atol=1e-5)
 
 
 def test_advantages_are_the_sum_over_what_was_seen():

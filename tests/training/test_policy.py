@@ -7,9 +7,12 @@ import pytest
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.files import write_npz
 from jaxleas.training.config import NetworkConfig
-from jaxleas.training.networks import initial_normaliser, make_networks
+from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of, read_policy, write_policy
 from jaxleas.types import InputError
+
+from .test_loss import brax_networks
 
 
 @pytest.fixture(scope="module")
@@ -19,15 +22,16 @@ def env():
 
 def make(env, activation="relu"):
     config = NetworkConfig(hidden=(16, 8), activation=activation)
-    networks = make_networks(config, env)
-    params = networks.policy_network.init(jax.random.key(0))
-    normaliser = initial_normaliser(config, env)
-    return networks, normaliser, params, policy_of(env, activation, normaliser, params)
+    networks = make_networks(config, env.config.signature())
+    params = networks.actor.init(jax.random.key(0))
+    normaliser = initial_normaliser(config, networks.signature)
+    return config, normaliser, params, policy_of(networks, env.config, normaliser, params)
 
 
 @pytest.mark.parametrize("activation", ["relu", "tanh", "swish", "elu"])
 def test_the_policy_is_the_mode_of_braxs_network(env, activation, brax_ranks):
-    networks, normaliser, params, policy = make(env, activation)
+    config, normaliser, params, policy = make(env, activation)
+    networks = brax_networks(config)
     observation = jax.random.normal(jax.random.key(1), (50, env.layout.size)) * 3
     logits = networks.policy_network.apply(normaliser, params, observation)
     mode = networks.parametric_action_distribution.mode(logits)
@@ -38,8 +42,10 @@ def test_a_command_keeps_the_limits(env):
     policy = make(env)[-1]
     observation = jax.random.normal(jax.random.key(2), (200, env.layout.size)) * 50
     command = np.asarray(policy(observation))
-    assert np.all(np.linalg.norm(command[:, :3], axis=1) <= policy.limits.max_acceleration * 1.0001)
-    assert np.all(np.abs(command[:, 3]) <= policy.limits.max_turn_rate * 1.0001)
+    assert np.all(
+        np.linalg.norm(command[:, :3], axis=1) <= policy.config.limits.max_acceleration * 1.0001
+    )
+    assert np.all(np.abs(command[:, 3]) <= policy.config.limits.max_turn_rate * 1.0001)
 
 
 def test_a_file_gives_the_same_policy_back(env, tmp_path):

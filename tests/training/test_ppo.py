@@ -5,19 +5,23 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
-from jaxleas.training.config import RunConfig
+from jaxleas.envs.heads.normal import NormalDistribution
+from jaxleas.envs.steering import Steering, SteeringConfig
 from jaxleas.training.learning import mirror_images, take_robots
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import make_networks
+from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo import make_train_step
 from jaxleas.training.train_state import initial_state
 
 from ..envs.worlds import flat, height_map, world_of
+from .runs import SteeringRun
 
 pytestmark = pytest.mark.usefixtures("brax_ranks")
 
+FREE = {"reward": {"final_failure": 0.0}}  # failing costs nothing but the end
 ALIVE_ONLY = {"direction": 0.0, "orientation": 0.0, "turn": 0.0, "acceleration": 0.0, "alive": 1.0}
+ALIVE_ONLY |= FREE["reward"]
 SMALL = {
     "environments": 64,
     "unroll": 10,
@@ -27,7 +31,6 @@ SMALL = {
     "steps": 64 * 10 * 60,
     "learning_rate": 3e-3,
     "final_learning_rate": 1e-4,
-    "final_failure": 0.0,
 }
 
 
@@ -37,14 +40,14 @@ def always(heights, motion):
 
 def run(condition=None, env=None, **ppo):
     """Train on flat ground and return the final state, its metrics, and the networks."""
-    config = RunConfig.model_validate(
-        {"network": {"hidden": [32, 32]}, "env": env or {}, "ppo": SMALL | ppo}
+    config = SteeringRun.model_validate(
+        {"network": {"hidden": [32, 32]}, "env": env or FREE, "ppo": SMALL | ppo}
     )
-    steering = SteeringEnv(config.env, condition)
-    networks = make_networks(config.network, steering)
+    steering = Steering(config.env, condition=condition)
+    networks = make_networks(config.network, steering.signature)
     world = world_of(height_map(flat), height_map(flat, half_size=4.0))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering), donate_argnums=1)
+    step = jax.jit(make_train_step(config, steering, networks), donate_argnums=1)
     history = []
     for _ in range(config.ppo.updates):
         state, metrics = step(world, state)
@@ -58,15 +61,15 @@ def test_the_cost_of_failing_grows_from_the_environments_to_the_final_one():
     def fails_once_moved(heights, motion):
         return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
 
-    env = {"reward": ALIVE_ONLY | {"failure": 1.0}}
-    _, history, _ = run(fails_once_moved, env, final_failure=5.0, steps=64 * 10 * 4)
+    env = {"reward": ALIVE_ONLY | {"failure": 1.0, "final_failure": 5.0}}
+    _, history, _ = run(fails_once_moved, env, steps=64 * 10 * 4)
     cost = [-row["walk/reward"] for row in history]
     np.testing.assert_allclose(cost, [1.0, 2.0, 3.0, 4.0], atol=0.05)
 
 
 def mean_value(state, networks) -> float:
-    values = networks.value_network.apply(state.normaliser, state.params.value, state.observation)
-    return float(jnp.mean(values))
+    seen = normalise(state.observation, state.normaliser)
+    return float(jnp.mean(networks.values(state.params.value, seen)))
 
 
 def test_the_value_of_staying_alive_is_the_geometric_sum():
@@ -82,10 +85,8 @@ def test_nothing_follows_a_termination():
         # Starts have no vertical velocity; after one step of a noisy policy everybody has.
         return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
 
-    env = {"reward": ALIVE_ONLY | {"failure": 0.7}}
-    state, history, networks = run(
-        fails_once_moved, env, discount=0.9, reward_scale=1.0, final_failure=0.7
-    )
+    env = {"reward": ALIVE_ONLY | {"failure": 0.7, "final_failure": 0.7}}
+    state, history, networks = run(fails_once_moved, env, discount=0.9, reward_scale=1.0)
     assert history[-1]["walk/failures_per_1000_steps"] > 990.0
     assert mean_value(state, networks) == pytest.approx(-0.7, abs=0.03)
 
@@ -99,14 +100,14 @@ def test_it_learns_to_walk_to_goals_on_flat_ground():
 
 
 def test_running_statistics_learn_the_observation():
-    config = RunConfig.model_validate(
+    config = SteeringRun.model_validate(
         {"network": {"hidden": [8], "normaliser": "running"}, "ppo": SMALL | {"steps": 640 * 3}}
     )
-    steering = SteeringEnv(config.env)
-    networks = make_networks(config.network, steering)
+    steering = Steering(config.env)
+    networks = make_networks(config.network, steering.signature)
     world = world_of(height_map(flat))
     state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering))
+    step = jax.jit(make_train_step(config, steering, networks))
     for _ in range(3):
         state, metrics = step(world, state)
     assert all(bool(value) for name, value in metrics.items() if "finite/" in name)
@@ -116,24 +117,25 @@ def test_running_statistics_learn_the_observation():
 
 
 def test_mirroring_flips_whole_robots_and_twice_is_none():
-    env = SteeringEnv(SteeringConfig())
+    signature = SteeringConfig().signature()
     key = jax.random.key(0)
     shape = (5, 32)
     batch = Experience(
-        observation=jax.random.normal(key, (*shape, env.layout.size)),
+        observation=jax.random.normal(key, (*shape, signature.size)),
         raw_action=jax.random.normal(key, (*shape, 4)),
-        location=jax.random.normal(key, (*shape, 4)),
-        deviation=jnp.ones((*shape, 4)),
+        distributions=(
+            NormalDistribution(jax.random.normal(key, (*shape, 4)), jnp.ones((*shape, 4))),
+        ),
         reward=jnp.zeros(shape),
         terminated=jnp.zeros(shape),
         truncated=jnp.zeros(shape),
     )
-    last = jax.random.normal(key, (1, 32, env.layout.size))
+    last = jax.random.normal(key, (1, 32, signature.size))
     flip = jax.random.bernoulli(jax.random.key(3), 0.5, (32,))
     everybody, always = jnp.arange(32), jnp.bool_(True)
-    images = mirror_images(env, batch, last[0])
+    images = mirror_images(signature, batch, last[0])
     once = take_robots(*images, everybody, flip, always)
-    twice = take_robots(*mirror_images(env, once[0], once[1][0]), everybody, flip, always)
+    twice = take_robots(*mirror_images(signature, once[0], once[1][0]), everybody, flip, always)
     jax.tree.map(np.testing.assert_array_equal, twice, (batch, last))
     some = jnp.array([7, 3, 30])
     few = take_robots(*images, some, flip[some], always)
@@ -151,13 +153,13 @@ def test_mirroring_flips_whole_robots_and_twice_is_none():
 
 
 def test_the_train_step_compiles_once():
-    config = RunConfig.model_validate(
+    config = SteeringRun.model_validate(
         {"network": {"hidden": [8]}, "ppo": SMALL | {"steps": 640 * 3}}
     )
-    steering = SteeringEnv(config.env)
-    networks = make_networks(config.network, steering)
+    steering = Steering(config.env)
+    networks = make_networks(config.network, steering.signature)
     world = world_of(height_map(flat))
-    step = make_train_step(config, steering)
+    step = make_train_step(config, steering, networks)
     traces = 0
 
     def counted(world, state):

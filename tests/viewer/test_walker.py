@@ -4,9 +4,9 @@ import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
+from jaxleas.export.write import described
 from jaxleas.guide import leas
 from jaxleas.guide.commands import walk_queries
-from jaxleas.guide.onnx_metadata import describe
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
 from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import make_atlas
@@ -31,7 +31,7 @@ def walker(policy=POLICY, env=FEARLESS) -> Walker:
 def test_it_walks_step_by_step_where_the_roll_out_walks(kind):
     policy = POLICY
     if kind == "onnx":
-        content = build_onnx(POLICY, describe(POLICY.config))
+        content = build_onnx(POLICY, described(POLICY.config))
         policy = onnx_policy_from_bytes(content, "policy.onnx")
     robot = walker(policy)
     robot.seek(GOAL)

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -118,13 +118,13 @@ def _problem(
     }
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
-            path = _rows(path, np.array([0, 0]))
+            path = path[np.array([0, 0])]
         return problem_from_guide(path, scene, **options), None
     except NoGroundError as error:
         if error.phase < 1:
             return None, error
         last = kept_configurations(len(path), settings.keep_every)[error.phase - 1]
-        return problem_from_guide(_rows(path, np.arange(last + 1)), scene, **options), error
+        return problem_from_guide(path[: last + 1], scene, **options), error
 
 
 def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
@@ -135,10 +135,6 @@ def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
 
 def _is_set(settings: PhaseSettings) -> bool:
     return settings.first_foot != type(settings).model_fields["first_foot"].default
-
-
-def _rows(path: GuidePath, rows: np.ndarray) -> GuidePath:
-    return GuidePath(*(getattr(path, each.name)[rows] for each in fields(path)))
 
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:

@@ -1,12 +1,13 @@
 """Postures of many guide paths, written down as they come about, handed out by path."""
 
+from collections.abc import Sequence
 from dataclasses import fields
 from time import perf_counter
 
 import numpy as np
 
 from jaxleas.contacts.sampling.guides import KeptGuides
-from jaxleas.contacts.sampling.plan import How, SamplingPlan
+from jaxleas.contacts.sampling.plan import Ending, How, SamplingPlan
 from jaxleas.contacts.sampling.stance import Stances, no_stances
 from jaxleas.contacts.sampling.world import World
 
@@ -36,29 +37,29 @@ class Diary:
             self._entries.append((guide, at.copy(), kind, moved, stances[every], com))
 
     def plans(
-        self, world: World, guides: KeptGuides, reasons: list[str], begun: float
+        self, world: World, guides: KeptGuides, ends: Sequence[tuple[Ending, str]], begun: float
     ) -> list[SamplingPlan]:
         """Return what was noted of each guide path, with the robustness of every posture.
 
         Args:
             world: robot, scene, settings.
             guides: that were walked.
-            reasons: what stopped each; empty for those that arrived.
+            ends: ending of each, and the sentence that says what stopped it.
             begun: when, by `perf_counter`.
         """
         names = world.ground.names
         guide, at, kind, moved, com, stances = self._columns()
         robustness = world.robustness(stances, com) if len(guide) else np.zeros(0)
         order = np.argsort(guide, kind="stable")
-        bounds = np.searchsorted(guide[order], np.arange(len(reasons) + 1))
-        seconds = (perf_counter() - begun) / len(reasons)
+        bounds = np.searchsorted(guide[order], np.arange(len(ends) + 1))
+        seconds = (perf_counter() - begun) / len(ends)
         plans = []
-        for number, reason in enumerate(reasons):
+        for number, (ending, reason) in enumerate(ends):
             rows = order[bounds[number] : bounds[number + 1]]
             last = int(at[rows[-1]]) if len(rows) else -1
             plans.append(
                 SamplingPlan(
-                    success=not reason,
+                    ending=ending,
                     reason=reason,
                     last_index=int(guides.index[number, last]) if last >= 0 else -1,
                     last_kept=last,

@@ -7,6 +7,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 How = Literal["start", "kept", "stepped", "repositioned"]
+Ending = Literal["reached", "trunk", "no_start", "no_contact", "repositions", "time_limit"]
+"""Why a plan ends: at the last configuration; the trunk touches the scene; no stance to start from;
+neither foot finds a contact that leads on; too many repositions; no time left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,7 +17,7 @@ class SamplingPlan:
     """Postures in double support along a guide path, and how far they got.
 
     Attributes:
-        success: whether the last configuration was reached.
+        ending: why the plan ends; "reached" is success.
         reason: what stopped the plan, a sentence; empty on success.
         last_index: of the last configuration reached in the guide path; -1 if none.
         last_kept: likewise among the kept configurations.
@@ -31,7 +34,7 @@ class SamplingPlan:
         seconds: spent on this guide path, an equal share where several were planned together.
     """
 
-    success: bool
+    ending: Ending
     reason: str
     last_index: int
     last_kept: int
@@ -50,6 +53,11 @@ class SamplingPlan:
     def __len__(self) -> int:
         """Return the number of postures."""
         return len(self.index)
+
+    @property
+    def success(self) -> bool:
+        """Whether the last configuration was reached."""
+        return self.ending == "reached"
 
     @property
     def reached(self) -> float:

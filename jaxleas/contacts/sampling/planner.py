@@ -16,7 +16,7 @@ from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations, require_usable
 from jaxleas.contacts.sampling.limbs import SIDES
 from jaxleas.contacts.sampling.maintain import maintain_contacts
-from jaxleas.contacts.sampling.plan import SamplingPlan
+from jaxleas.contacts.sampling.plan import Ending, SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.world import World, make_world
 from jaxleas.robots import Robot, load_robot
@@ -103,7 +103,7 @@ def plan_over(
 class _Walk:
     """Guide paths walked abreast.
 
-    `at` is each path's configuration reached, `failures` those in a row, `reason` what stopped it.
+    `at` is each path's configuration reached, `failures` those in a row, `ends` how it ended.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class _Walk:
         self.repositions = np.zeros(count, dtype=np.int64)
         self.order = np.full(count, len(SIDES))
         self.live = np.ones(count, dtype=bool)
-        self.reasons = [""] * count
+        self.ends: list[tuple[Ending, str]] = [("reached", "")] * count
         self.diary = Diary()
 
     def plans(self) -> list[SamplingPlan]:
@@ -129,15 +129,18 @@ class _Walk:
             if len(blocked):
                 failed = self._step(blocked, can_stay)
                 self._reposition(failed)
-        return self.diary.plans(self.world, self.guides, self.reasons, self.begun)
+        return self.diary.plans(self.world, self.guides, self.ends, self.begun)
 
     def _start(self) -> None:
         first = first_stances(self.world, self.guides)
         self.stances = first.stances
         free = self.guides.trunk_free[:, 0]
-        self._stop(np.flatnonzero(~free), "the trunk touches the scene at the first configuration")
+        self._stop(
+            np.flatnonzero(~free), "trunk", "the trunk touches the scene at the first configuration"
+        )
         self._stop(
             np.flatnonzero(free & ~first.found),
+            "no_start",
             "no robust stance with both feet exists at the first configuration",
         )
         good = np.flatnonzero(first.found & free)
@@ -174,7 +177,7 @@ class _Walk:
         where = position[np.flatnonzero(stuck), progress[stuck]]
         blocked, can_stay = walking[stuck], kept.limb[where]
         free = self.guides.trunk_free[blocked, self.at[blocked] + 1]
-        self._stop(blocked[~free], "the trunk touches the scene at the next configuration")
+        self._stop(blocked[~free], "trunk", "the trunk touches the scene at the next configuration")
         return blocked[free], can_stay[free]
 
     def _step(self, blocked: np.ndarray, can_stay: np.ndarray) -> np.ndarray:
@@ -201,11 +204,16 @@ class _Walk:
         enough = self.failures[failed] >= settings.max_tries
         self._stop(
             failed[enough],
+            "no_contact",
             "neither foot finds a contact that leads on to the next configuration, nor after "
             "repositioning",
         )
         many = ~enough & (self.repositions[failed] >= settings.max_repositions)
-        self._stop(failed[many], f"more than {settings.max_repositions} repositions were needed")
+        self._stop(
+            failed[many],
+            "repositions",
+            f"more than {settings.max_repositions} repositions were needed",
+        )
         pending = failed[~enough & ~many]
         for turn in range(self.limbs):
             if len(pending):
@@ -216,6 +224,7 @@ class _Walk:
                 pending = pending[~done]
         self._stop(
             pending,
+            "no_contact",
             "neither foot finds a contact that leads on to the next configuration, nor can one be "
             "repositioned",
         )
@@ -255,10 +264,11 @@ class _Walk:
     def _finish(self, guide: np.ndarray) -> None:
         self.live[guide[self.at[guide] >= self.guides.length[guide] - 1]] = False
 
-    def _stop(self, guide: np.ndarray, reason: str) -> None:
+    def _stop(self, guide: np.ndarray, ending: Ending, reason: str) -> None:
         for each in guide:
             self.live[each] = False
-            self.reasons[each] = (
-                f"stopped at configuration {self.guides.index[each, self.at[each]]} of the guide "
-                f"path: {reason}"
+            where = self.guides.index[each, self.at[each]]
+            self.ends[each] = (
+                ending,
+                f"stopped at configuration {where} of the guide path: {reason}",
             )

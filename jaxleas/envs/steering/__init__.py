@@ -1,6 +1,11 @@
 """LEAS steering: a root that walks towards goals over terrain it sees a little of (T ch. 3)."""
 
-from jaxleas.envs.steering.config import MotionLimits, RewardWeights, SteeringConfig
+from jaxleas.envs.steering.config import (
+    MotionLimits,
+    RewardWeights,
+    SteeringConfig,
+    TerrainConfig,
+)
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import (
     ICRA81,
@@ -10,8 +15,9 @@ from jaxleas.envs.steering.layout import (
     layout_named,
 )
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_picks, draw_starts, restart_where, take
-from jaxleas.envs.steering.state import Outcome, Plan, SteeringState
+from jaxleas.envs.steering.starts import draw_starts
+from jaxleas.envs.steering.state import Plan, SeenResult, SteeringResult, SteeringState
+from jaxleas.envs.steering.task import Steering
 from jaxleas.envs.steering.world import World, make_world
 
 __all__ = [
@@ -20,18 +26,18 @@ __all__ = [
     "THESIS145",
     "MotionLimits",
     "ObservationLayout",
-    "Outcome",
     "Plan",
     "RewardParams",
     "RewardWeights",
+    "SeenResult",
+    "Steering",
     "SteeringConfig",
     "SteeringEnv",
+    "SteeringResult",
     "SteeringState",
+    "TerrainConfig",
     "World",
-    "draw_picks",
     "draw_starts",
     "layout_named",
     "make_world",
-    "restart_where",
-    "take",
 ]

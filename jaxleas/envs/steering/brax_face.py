@@ -15,7 +15,7 @@ from brax.envs.wrappers.training import VmapWrapper
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.world import World
 
 # A flax dataclass, which type checkers do not see through.
@@ -39,8 +39,8 @@ class BraxSteering(Env):
     def reset(self, rng: jax.Array) -> Any:
         """Draw terrain, start, heading and goal, and stand there."""
         pool_key, take_key, next_key = jax.random.split(rng, 3)
-        pool = draw_starts(self.steering, self.world, pool_key, CANDIDATES)
-        state, observation = take(pool, take_key, 1)
+        keys = (pool_key, take_key)
+        state, observation = begin(self.steering, self.world, keys, 1, of=CANDIDATES)
         state, observation = jax.tree.map(lambda leaf: leaf[0], (state, observation))
         zero = jnp.float32(0.0)
         info = {"next_start": next_key, "truncation": zero, "margin": zero}

@@ -1,12 +1,20 @@
 """The constants of the steering task (T table 3.1)."""
 
 import math
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive
 from jaxleas.configuration.strict import Strict
+from jaxleas.envs.environment import TaskConfig, WorldsConfig
+from jaxleas.envs.heads import Ball, Interval, Normal
+from jaxleas.envs.mirror import Mirror
+from jaxleas.envs.signature import Part, Signature
+from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN, layout_named
+from jaxleas.envs.steering.scaling import affine_scaling
+from jaxleas.terrain.config import GeneratorConfig
 
 
 class MotionLimits(Strict):
@@ -36,13 +44,54 @@ class RewardWeights(Strict):
     alive: NonNegative = 0.6
     """w_alive, for every valid configuration. The thesis has 1.0."""
     failure: NonNegative = 0.0
-    """Taken off for an invalid configuration, beyond what not being alive any more costs. The
-    thesis has none; training lets it grow (ppo.final_failure)."""
+    """Taken off for an invalid configuration at the start of training, beyond what not being alive
+    any more costs. The thesis has none."""
+    final_failure: NonNegative = 60.0
+    """What `failure` grows to, linearly. At first falling must be cheap, or no policy dares to set
+    foot on a bridge; in the end it must cost much, or turning while walking backwards towards an
+    edge pays although one in ten falls."""
 
 
-class SteeringConfig(Strict):
+class LinkShares(Strict):
+    """How often an episode begins at a link of each kind, relative to the others.
+
+    Left to chance half of the links would be level ground, and one in ten a narrow bridge, which
+    takes the longest to learn.
+    """
+
+    bridge: NonNegative = 0.35
+    stairs_up: NonNegative = 0.20
+    stairs_down: NonNegative = 0.20
+    rubble: NonNegative = 0.10
+    obstacles: NonNegative = 0.12
+    flat: NonNegative = 0.03
+    detour: NonNegative = 0.0
+    """Holes and walls to be walked round (terrain.generator.detour_probability makes them)."""
+    cliff: NonNegative = 0.0
+    """A goal too high up or too far down: stop. With a share of 0.1 policies also stopped before
+    stairs; random goals teach enough of stopping."""
+    void: NonNegative = 0.0
+    """A goal where there is no ground: stop; likewise."""
+
+
+class TerrainConfig(WorldsConfig):
+    """The arenas that are trained on."""
+
+    resolution: Annotated[float, Field(ge=0.01, le=0.2)] = 0.04
+    """Side of a height map's cell [m]."""
+    shares: LinkShares = LinkShares()
+    generator: GeneratorConfig = GeneratorConfig()
+
+
+class SteeringConfig(TaskConfig):
     """The steering environment."""
 
+    swept: ClassVar[tuple[str, ...]] = tuple(
+        f"reward.{name}" for name in RewardWeights.model_fields
+    )
+    moved: ClassVar[Mapping[str, str]] = {"ppo.final_failure": "env.reward.final_failure"}
+
+    task: Literal["steering"] = "steering"  # type: ignore[assignment]
     robot: str = "talos"
     """Name of the robot."""
     observation: Literal["thesis144", "thesis145", "icra81"] = "thesis144"
@@ -67,6 +116,36 @@ class SteeringConfig(Strict):
     """A goal lasts a random number of steps in this range, or until it is reached."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
+
+    def signature(self) -> Signature:
+        """Return the layout's observation, and acceleration and turn rate in the root frame."""
+        layout = layout_named(self.observation)
+        height_range = (self.height_low, self.height_high)
+        mean, deviation = affine_scaling(
+            layout.size, height_range, self.limits.max_speed, layout.counts_surfaces
+        )
+        observation = Part(
+            "observation",
+            (layout.size,),
+            mean=tuple(map(float, mean)),
+            deviation=tuple(map(float, deviation)),
+            mirror=Mirror(
+                tuple(map(int, layout.mirror_permutation)), tuple(map(float, layout.mirror_sign))
+            ),
+        )
+        turn = self.limits.max_turn_rate
+        command = Normal(
+            "command",
+            (Ball(self.limits.max_acceleration), Interval(-turn, turn)),
+            Mirror.of_signs(MIRROR_ACTION_SIGN.tolist()),
+        )
+        return Signature((observation,), (command,))
+
+    def describe(self) -> dict[str, Any]:
+        """Return how to feed an exported policy, and how to obey it."""
+        from jaxleas.envs.steering.description import describe_steering
+
+        return describe_steering(self)
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

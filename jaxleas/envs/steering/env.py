@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -24,7 +23,13 @@ from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
 from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, write_observation
 from jaxleas.envs.steering.reward import RewardParams, reward
-from jaxleas.envs.steering.state import GOALS, Outcome, Plan, SteeringState, Verdict
+from jaxleas.envs.steering.state import (
+    GOALS,
+    Plan,
+    SeenResult,
+    SteeringResult,
+    SteeringState,
+)
 from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain.atlas import Atlas
@@ -146,10 +151,10 @@ class SteeringEnv:
         params: RewardParams,
         state: SteeringState,
         action: Float[Array, "*batch 4"],
-    ) -> tuple[SteeringState, Outcome]:
+    ) -> tuple[SteeringState, SeenResult]:
         """Advance one time step and look: `advance`, then `look`, with their arguments."""
-        after, verdict = self.advance(atlas, params, state, action)
-        return after, Outcome(**vars(verdict), observation=self.look(atlas, after))
+        after, result = self.advance(atlas, params, state, action)
+        return after, SeenResult(**vars(result), observation=self.look(atlas, after))
 
     def _judge_all(
         self, atlas: Atlas, state: SteeringState, motion: RootMotion
@@ -176,7 +181,7 @@ class SteeringEnv:
         params: RewardParams,
         state: SteeringState,
         action: Float[Array, "*batch 4"],
-    ) -> tuple[SteeringState, Verdict]:
+    ) -> tuple[SteeringState, SteeringResult]:
         """Advance one time step (T eq. 3.3), judge the configuration and reward it.
 
         Args:
@@ -209,7 +214,7 @@ class SteeringEnv:
             step=state.step + 1,
             memory=memory,
         )
-        return after, Verdict(
+        return after, SteeringResult(
             reward=gained,
             terminated=~valid,
             truncated=valid & (after.step >= config.episode_steps),
@@ -227,12 +232,3 @@ def _pick(values: Array, index: Int[Array, "*batch"]) -> Array:
     for number, entry in enumerate(entries[1:], start=1):
         picked = jnp.where(which == number, entry, picked)
     return picked
-
-
-def select(flag: Array, chosen: SteeringState, other: SteeringState) -> SteeringState:
-    """Return, robot by robot, `chosen` where the flag is set and `other` elsewhere."""
-
-    def pick(left: Array, right: Array) -> Array:
-        return jnp.where(flag.reshape(flag.shape + (1,) * (left.ndim - flag.ndim)), left, right)
-
-    return jax.tree.map(pick, chosen, other)

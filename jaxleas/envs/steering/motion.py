@@ -5,15 +5,8 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.config import MotionLimits
-from jaxleas.geometry.rotations import rotate_by_yaw, squared_length, wrap_angle
+from jaxleas.geometry.rotations import bound_norm, rotate_by_yaw, wrap_angle
 from jaxleas.types import RootMotion
-
-
-def bound_norm(vector: Float[Array, "*batch 3"], limit: float) -> Float[Array, "*batch 3"]:
-    """Shorten vectors that are longer than `limit`; leave the others alone."""
-    square = squared_length(vector)[..., None]
-    # rsqrt of at least limit^2: no division by zero, no branch, finite derivatives at zero.
-    return vector * (limit / jnp.sqrt(jnp.maximum(square, limit * limit)))
 
 
 def scale_action(

@@ -1,7 +1,6 @@
 """What the policy sees (T eq. 3.1)."""
 
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 from jaxtyping import Float
 
@@ -9,8 +8,6 @@ from jaxleas.envs.steering.layout import MOTION_SIZE
 from jaxleas.geometry.rotations import rotate_by_yaw, squared_length
 from jaxleas.types import RootMotion
 from jaxleas.xla.angles import bearing
-
-MOST_SURFACES = 8.0  # around a robot, about: on rubble
 
 
 def direction_to_goal(
@@ -56,23 +53,3 @@ def write_observation(
     observation = jnp.where(columns > low, columns, low)
     observation = jnp.where(observation < high, observation, high)
     return observation.at[..., :MOTION_SIZE].set(jnp.stack(seen, axis=-1))
-
-
-def affine_scaling(
-    size: int,
-    height_range: tuple[float, float],
-    max_speed: float,
-    counts_surfaces: bool = False,
-) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
-    """Return mean and deviation that map an observation's ranges onto [-1, 1].
-
-    Fixed from the task's own bounds, not from data: a running normaliser shrinks the rare heights
-    that matter (field notes: 89 % success instead of 98 %).
-    """
-    low, high = height_range
-    mean, deviation = np.zeros(size, np.float32), np.full(size, max_speed, np.float32)
-    deviation[3] = np.pi
-    mean[MOTION_SIZE:], deviation[MOTION_SIZE:] = (low + high) / 2, (high - low) / 2
-    if counts_surfaces:
-        mean[-1] = deviation[-1] = 0.5 * MOST_SURFACES
-    return mean, deviation

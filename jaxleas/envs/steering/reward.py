@@ -1,5 +1,8 @@
 """The reward (T sec. 3.2.4)."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
@@ -25,7 +28,19 @@ class RewardParams:
     @classmethod
     def of(cls, weights: RewardWeights) -> "RewardParams":
         """Return the weights of a configuration as float32 scalars."""
-        return cls(**{name: jnp.float32(value) for name, value in weights.model_dump().items()})
+        return cls(**{name: jnp.float32(getattr(weights, name)) for name in cls.__annotations__})
+
+    @classmethod
+    def at(cls, numbers: Mapping[str, Any], progress: Any) -> "RewardParams":
+        """Return the weights at some time of a training: that of a failure grows linearly.
+
+        Args:
+            numbers: the fields of `RewardWeights`, as reward.NAME.
+            progress: share of the training that is done.
+        """
+        weights = {name: numbers[f"reward.{name}"] for name in cls.__annotations__}
+        growth = numbers["reward.final_failure"] - weights["failure"]
+        return cls(**(weights | {"failure": weights["failure"] + progress * growth}))
 
 
 def reward(

@@ -4,11 +4,12 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from flax import struct
 from jax import Array
-from jaxtyping import Bool, Float, Int, Key
+from jaxtyping import Float, Key
 
-from jaxleas.envs.steering.env import SteeringEnv, select
+from jaxleas.envs.environment import Starts
+from jaxleas.envs.starts import pool_of, take
+from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
 from jaxleas.envs.steering.world import World
 from jaxleas.terrain.atlas import VOID
@@ -21,24 +22,13 @@ HEIGHT_SPREAD = (-0.20, 0.07)
 FOREVER = 2**30  # steps
 
 
-@struct.dataclass
-class StartPool:
-    """Candidates for the next starts, with those that are valid listed first.
-
-    Attributes:
-        state: of each candidate.
-        observation: of each candidate.
-        order: indices of the candidates, the valid ones first.
-        valid_count: number of valid candidates.
-    """
-
-    state: SteeringState
-    observation: Float[Array, "candidates size"]
-    order: Int[Array, " candidates"]
-    valid_count: Int[Array, ""]
-
-
-def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int) -> StartPool:
+def draw_starts(
+    env: SteeringEnv,
+    world: World,
+    key: Key[Array, ""],
+    count: int,
+    wander_share: float | None = None,
+) -> Starts:
     """Draw candidates for starts: a random link, anywhere in its start area, any heading.
 
     Every call draws anew, so no start is ever replayed. Candidates that violate the condition, or
@@ -50,7 +40,10 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
         world: terrains and links.
         key: consumed here.
         count: number of candidates.
+        wander_share: share of the starts with a random goal; the configuration's if None.
     """
+    if wander_share is None:
+        wander_share = env.config.wander_share
     link_key, place_key, motion_key, goal_key, wander_key = jax.random.split(key, 5)
     link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
     plan = _draw_plan(env, world, link, goal_key)
@@ -64,53 +57,30 @@ def draw_starts(env: SteeringEnv, world: World, key: Key[Array, ""], count: int)
         foreseen, memory = env.foresight.begin(heights, motion, chance)
         valid &= foreseen >= 0.0
     state = env.start(motion, plan, memory)
-    wanders = jax.random.bernoulli(wander_key, env.config.wander_share, (count,))
+    wanders = jax.random.bernoulli(wander_key, wander_share, (count,))
     state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
     arrival = _arrival(env, world, motion, plan)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
     arrives = env.condition(arrival_heights, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
-    return StartPool(
-        state=state,
-        observation=env.observe(heights, motion, env.goal(state)),
-        order=jnp.nonzero(valid, size=count, fill_value=0)[0].astype(jnp.int32),
-        valid_count=jnp.sum(valid, dtype=jnp.int32),
-    )
+    return Starts(state, valid, world.kind[link])
 
 
-def take(
-    pool: StartPool, key: Key[Array, ""], count: int
+def begin(
+    env: SteeringEnv, world: World, keys: tuple[Key[Array, ""], Key[Array, ""]], count: int, of: int
 ) -> tuple[SteeringState, Float[Array, "count size"]]:
-    """Return the states and observations of `count` valid starts, drawn from the pool."""
-    index = draw_picks(pool, key, (count,))
-    return jax.tree.map(lambda leaf: leaf[index], (pool.state, pool.observation))
-
-
-def draw_picks(
-    pool: StartPool, key: Key[Array, ""], shape: tuple[int, ...]
-) -> Int[Array, "*shape"]:
-    """Return indices of valid candidates, each as likely as any other."""
-    # By one random number each, where `randint` takes two; what it is off by is one in 2^13.
-    count = jnp.maximum(pool.valid_count, 1)
-    place = jax.random.uniform(key, shape) * count.astype(jnp.float32)
-    return pool.order[jnp.minimum(place.astype(jnp.int32), count - 1)]
-
-
-def restart_where(
-    done: Bool[Array, " batch"], state: SteeringState, pool: StartPool, pick: Int[Array, " batch"]
-) -> SteeringState:
-    """Give a fresh start to the robots whose episode is over; leave the others alone.
+    """Return valid first states of episodes, and what is seen in them.
 
     Args:
-        done: whose episode is over.
-        state: of the episodes.
-        pool: fresh starts.
-        pick: which candidate each robot would get (`draw_picks`).
+        env: the task's environment.
+        world: terrains and links.
+        keys: randomness of the candidates, and of the choice among them; consumed here.
+        count: number of states.
+        of: number of candidates that they are chosen from.
     """
-    # The others look at candidate 0, all at the same one: it stays in the cache.
-    pick = jnp.where(done, pick, 0)
-    fresh = jax.tree.map(lambda leaf: leaf.at[pick].get(mode="promise_in_bounds"), pool.state)
-    return select(done, fresh, state)
+    pool_key, take_key = keys
+    state, _ = take(pool_of(draw_starts(env, world, pool_key, of)), take_key, count)
+    return state, env.look(world.atlas, state)
 
 
 def _draw_motion(

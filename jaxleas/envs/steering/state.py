@@ -4,8 +4,9 @@ from typing import Any
 
 from flax import struct
 from jax import Array
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
+from jaxleas.envs.environment import StepResult
 from jaxleas.types import RootMotion
 
 GOALS = 4  # goals drawn ahead for an episode: more than its steps can use up
@@ -50,27 +51,19 @@ class SteeringState:
 
 
 @struct.dataclass
-class Verdict:
-    """What a step tells, beside the next state.
+class SteeringResult(StepResult):
+    """What a step tells, besides the next state.
 
     Attributes:
-        reward: for the step.
-        terminated: the configuration is invalid: the episode ends and nothing follows.
-        truncated: the episode was cut while valid: its future has a value, only unseen.
-        margin: of the condition [m], positive where satisfied.
-        reached: the goal sought during the step was reached.
+        margin: margin of the condition [m], positive where satisfied.
     """
 
-    reward: Float[Array, "*batch"]
-    terminated: Bool[Array, "*batch"]
-    truncated: Bool[Array, "*batch"]
     margin: Float[Array, "*batch"]
-    reached: Bool[Array, "*batch"]
 
 
 @struct.dataclass
-class Outcome(Verdict):
-    """A verdict, and what is seen after the step.
+class SeenResult(SteeringResult):
+    """What a step tells, and what is seen after it.
 
     Attributes:
         observation: of the state reached [physical units]; the last one of an episode, too.

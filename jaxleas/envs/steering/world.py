@@ -9,6 +9,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
+from jaxleas.envs.steering.config import LinkShares
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.generator import Arena
 from jaxleas.terrain.links import Link
@@ -16,6 +17,8 @@ from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types.errors import InputError
 
 DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
+KINDS = tuple(LinkShares.model_fields)
+"""Kinds of links: the groups of an episode's starts."""
 NEAR = 0.8  # depth of the strip that counts as near to what is to be crossed [m]
 
 
@@ -30,6 +33,7 @@ class World:
         near_area: the strip of it next to what is to be crossed [m].
         goal_area: likewise where it ends [m].
         arena_area: likewise of each link's whole arena, for random goals [m].
+        kind: number of each link's kind, an index of `KINDS`.
         crossable: whether the goal can be reached at all; before a dead end it cannot.
         cumulative_share: of the starts that fall on each link and those before it; ends at 1.
     """
@@ -40,6 +44,7 @@ class World:
     near_area: Float[Array, "links 4"]
     goal_area: Float[Array, "links 4"]
     arena_area: Float[Array, "links 4"]
+    kind: Int[Array, " links"]
     crossable: Bool[Array, " links"]
     cumulative_share: Float[Array, " links"]
 
@@ -76,6 +81,7 @@ def make_world(
         near_area=_areas([_near(link) for _, link in links]),
         goal_area=_areas([link.goal_area for _, link in links]),
         arena_area=_areas([extents[index] for index, _ in links]),
+        kind=jnp.asarray([KINDS.index(link.kind) for _, link in links], dtype=jnp.int32),
         crossable=jnp.asarray([link.kind not in DEAD_ENDS for _, link in links]),
         cumulative_share=_cumulative([link.kind for _, link in links], shares),
     )

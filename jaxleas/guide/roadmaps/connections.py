@@ -8,10 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.guide.roadmaps.places import Places, on_host
-from jaxleas.guide.rollout import RollOut, paths, roll_out
+from jaxleas.guide.places import Places
+from jaxleas.guide.rollout import RollOut, Trips, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.types import GuidePath, RootMotion
+from jaxleas.types import GuidePath, RootMotion, is_ground
 
 BATCH = 64
 """Connections walked in one compiled call: fewer leave the vector units idle."""
@@ -92,20 +92,13 @@ class Connector:
         return guide_path, bool(walked.reached[0]), bool(walked.invalid[0])
 
     def _walk(self, motion: RootMotion, waypoints: np.ndarray, steps: int) -> RollOut:
-        return roll_out(
-            self.places.env,
-            self.places.atlas,
-            jnp.zeros(len(waypoints), jnp.int32),
-            self.method,
-            motion,
-            jnp.asarray(waypoints),
-            steps,
-            self.radius,
-        )
+        map_index = jnp.zeros(len(waypoints), jnp.int32)
+        trips = Trips(self.places.atlas, map_index, motion, jnp.asarray(waypoints))
+        return roll_out(self.places.env, self.method, trips, steps, self.radius)
 
     def _lifted(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N 3"]:
         height = self.places.root_height(places)
-        height = np.where(np.isnan(height), self.places.env.robot.walking_height, height)
+        height = np.where(is_ground(height), height, self.places.env.robot.walking_height)
         return np.column_stack([places, height]).astype(np.float32)
 
 
@@ -116,5 +109,4 @@ def one(motion: RootMotion, index: int) -> RootMotion:
 
 def _at(walked: RollOut, end: Int[np.ndarray, " N"], count: int) -> RootMotion:
     robot = np.arange(count)
-    whole = walked.position, walked.velocity, walked.yaw
-    return on_host(*(np.asarray(each)[robot, end[:count]] for each in whole))
+    return jax.tree.map(lambda leaf: np.asarray(leaf)[robot, end[:count]], walked.motion)

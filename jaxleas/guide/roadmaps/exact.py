@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from jaxleas.conditions import exact_collision, exact_strict_reachability
-from jaxleas.guide.roadmaps.places import HEADINGS, Places
+from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
 from jaxleas.terrain.mesh_scene import mesh_to_scene
 from jaxleas.terrain.meshes import SUFFIXES, Up

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.guide.files import Reason
+from jaxleas.guide.places import on_host
 from jaxleas.guide.roadmaps.budget import Budget
 from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.ledger import Key, Ledger, key_of
-from jaxleas.guide.roadmaps.places import on_host
 from jaxleas.guide.roadmaps.samples import Samples
 from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
 from jaxleas.types import GuidePath, RootMotion
@@ -213,22 +213,11 @@ def until_refused(path: GuidePath, refused: Bool[np.ndarray, " T"]) -> GuidePath
     """Return a path up to the first refused configuration, which is marked as not valid."""
     count = 1 + int(np.argmax(refused))
     valid = path.valid[:count] & ~refused[:count]
-    return replace(_first(path, count), valid=valid)
+    return replace(path[:count], valid=valid)
 
 
 def part_towards(path: GuidePath, goal: Float[np.ndarray, " 2"]) -> GuidePath:
     """Return a path up to the valid configuration nearest to the goal; at least its first one."""
     valid = len(path) if path.valid.all() else max(1, int(np.argmin(path.valid)))
     offset = path.position[:valid, :2].astype(np.float64) - goal
-    return _first(path, 1 + int(np.argmin(np.hypot(*offset.T))))
-
-
-def _first(path: GuidePath, count: int) -> GuidePath:
-    """Return a path's first configurations."""
-    return GuidePath(
-        path.time[:count],
-        path.position[:count],
-        path.yaw[:count],
-        path.velocity[:count],
-        path.valid[:count],
-    )
+    return path[: 1 + int(np.argmin(np.hypot(*offset.T)))]

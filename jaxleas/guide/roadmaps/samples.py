@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.guide.roadmaps.places import Places
+from jaxleas.guide.places import Places
 
 BLOCK = 256
 GOAL_EVERY = 20

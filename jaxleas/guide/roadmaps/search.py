@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.guide.places import on_host
 from jaxleas.guide.roadmaps.connections import BATCH
 from jaxleas.guide.roadmaps.ledger import Key, Ledger, Question, key_of
-from jaxleas.guide.roadmaps.places import on_host
 from jaxleas.guide.roadmaps.samples import Samples
 from jaxleas.types import JaxleasError, RootMotion
 

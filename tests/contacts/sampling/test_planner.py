@@ -192,3 +192,19 @@ def test_a_bad_guide_path_is_refused(change, sentence):
 def test_a_scene_without_surfaces_is_refused():
     with pytest.raises(InputError, match="no surfaces"):
         plan_contacts(Scene({}), straight(1.0))
+
+
+@pytest.mark.parametrize(
+    ("scene", "path", "settings", "ending"),
+    [
+        (flat(), straight(1.0), {}, "reached"),
+        (hole(), straight(4.0), {}, "no_contact"),
+        (wall(), straight(4.0), {}, "trunk"),
+        (hole(), straight(4.0, y=2.9), {}, "no_start"),
+        (hole(), straight(4.0), {"max_repositions": 0}, "repositions"),
+    ],
+)
+def test_how_a_plan_ends_is_a_value(scene, path, settings, ending):
+    plan = plan_contacts(scene, path, SamplingSettings(samples=2000, **settings))
+    assert (plan.ending, plan.success) == (ending, ending == "reached")
+    assert bool(plan.reason) != plan.success

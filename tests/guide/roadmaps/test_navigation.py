@@ -107,8 +107,7 @@ def test_a_connection_that_fails_on_the_whole_path_is_taken_out():
                 self.falls -= 1
                 self.failed = waypoints
                 stop = passages(path, waypoints, self.radius)[0] + 1
-                parts = (path.time, path.position, path.yaw, path.velocity, path.valid)
-                return GuidePath(*(each[:stop] for each in parts)), False, False
+                return path[:stop], False, False
             return path, reached, invalid
 
     plain = kino_navigator(trench_map())

@@ -5,9 +5,9 @@ import numpy as np
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide import rb_kino
+from jaxleas.guide.places import Places
 from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.navigation import Navigator
-from jaxleas.guide.roadmaps.places import Places
 from jaxleas.terrain import HeightMap
 
 ENV = SteeringEnv(SteeringConfig())

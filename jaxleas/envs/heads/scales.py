@@ -1,0 +1,84 @@
+"""From a normal head's numbers in [-1, 1] to physical units, in JAX and as ONNX nodes."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import jax.numpy as jnp
+from jax import Array
+from jaxtyping import Float
+
+from jaxleas.geometry.rotations import bound_norm
+from jaxleas.types.onnx_nodes import OnnxNodes
+
+
+class Scale(Protocol):
+    """How some consecutive numbers of an action are scaled.
+
+    Attributes:
+        size: how many.
+    """
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        ...
+
+    def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
+        """Return physical values; what lies outside [-1, 1] is clipped."""
+        ...
+
+    def onnx(self, nodes: OnnxNodes, action: str) -> str:
+        """Add the nodes that compute the same of a value within [-1, 1]; return its name."""
+        ...
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Numbers, each within the same bounds.
+
+    Attributes:
+        low: physical value of -1.
+        high: physical value of 1.
+        size: how many.
+    """
+
+    low: float
+    high: float
+    size: int = 1
+
+    def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
+        """Return low + (action + 1) / 2 (high - low)."""
+        scaled = jnp.clip(action, -1.0, 1.0) * (0.5 * (self.high - self.low))
+        return scaled + self._centre if self._centre else scaled
+
+    def onnx(self, nodes: OnnxNodes, action: str) -> str:
+        """Add the nodes that compute the same."""
+        scaled = nodes.add("Mul", action, nodes.constant(0.5 * (self.high - self.low)))
+        return nodes.add("Add", scaled, nodes.constant(self._centre)) if self._centre else scaled
+
+    @property
+    def _centre(self) -> float:
+        return 0.5 * (self.low + self.high)
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A vector whose norm is bounded.
+
+    Attributes:
+        radius: largest norm, in physical units.
+        size: number of its components.
+    """
+
+    radius: float
+    size: int = 3
+
+    def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
+        """Return radius * action, shortened where the action is longer than 1."""
+        return bound_norm(jnp.clip(action, -1.0, 1.0), 1.0) * self.radius
+
+    def onnx(self, nodes: OnnxNodes, action: str) -> str:
+        """Add the nodes that compute the same."""
+        norm = nodes.add("ReduceL2", action, axes=[1], keepdims=1)
+        bounded = nodes.add("Div", action, nodes.add("Max", norm, nodes.constant(1.0)))
+        return nodes.add("Mul", bounded, nodes.constant(self.radius))

@@ -1,0 +1,79 @@
+"""Fresh starts for episodes that are over, in NumPy, for tasks that step on the host."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import numpy as np
+from jaxtyping import Bool, Int
+
+from jaxleas.envs.environment import Starts
+from jaxleas.types.errors import InputError
+
+
+@dataclass(frozen=True)
+class HostPool:
+    """Valid candidates for the next starts.
+
+    Attributes:
+        state: of each valid candidate.
+        group: number of the group that each belongs to.
+        drawn: how many candidates there were, valid or not.
+    """
+
+    state: Any
+    group: Int[np.ndarray, " valid"]
+    drawn: int
+
+    def __len__(self) -> int:
+        """Return the number of valid candidates."""
+        return len(self.group)
+
+    @classmethod
+    def of(cls, starts: Starts) -> "HostPool":
+        """Return the valid ones of starts.
+
+        Raises:
+            InputError: there is no valid one: no episode could begin.
+        """
+        valid = np.flatnonzero(np.asarray(starts.valid))
+        if not len(valid):
+            raise InputError(
+                f"the task drew {len(starts.valid)} starts, none of which is valid: no episode can"
+                " begin"
+            )
+        state, group = jax.tree.map(
+            lambda leaf: np.asarray(leaf)[valid], (starts.state, starts.group)
+        )
+        return cls(state, group, len(starts.valid))
+
+    def draw_picks(
+        self, generator: np.random.Generator, shape: tuple[int, ...]
+    ) -> Int[np.ndarray, "*shape"]:
+        """Return indices of candidates, each as likely as any other."""
+        return generator.integers(len(self), size=shape)
+
+    def take(self, pick: Int[np.ndarray, " count"]) -> tuple[Any, Int[np.ndarray, " count"]]:
+        """Return the states and groups of some candidates."""
+        return jax.tree.map(lambda leaf: leaf[pick], (self.state, self.group))
+
+    def restart_where(
+        self, done: Bool[np.ndarray, " batch"], state: Any, pick: Int[np.ndarray, " batch"]
+    ) -> Any:
+        """Give a fresh start to the robots whose episode is over; leave the others alone.
+
+        Args:
+            done: which episodes are over.
+            state: state of the episodes.
+            pick: candidate that each robot would get.
+        """
+        over = np.flatnonzero(done)
+        if not len(over):
+            return state
+
+        def renewed(old: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+            new = np.array(old)
+            new[over] = fresh[pick[over]]
+            return new
+
+        return jax.tree.map(renewed, state, self.state)

@@ -1,0 +1,26 @@
+"""The one place where tasks are named."""
+
+from typing import Any
+
+from jaxleas.configuration.registry import Registry
+from jaxleas.envs.environment import Task
+from jaxleas.types.errors import InputError
+
+DEFAULT_TASK = "steering"
+"""Task of configurations that name none: those written before there was another."""
+
+
+def _require_task(name: str, item: Any) -> None:
+    if not (isinstance(item, type) and issubclass(item, Task)):
+        raise InputError(
+            f"{name} is no task: derive a class from jaxleas.envs.environment.Task, as"
+            " docs/your_own.md shows"
+        )
+
+
+PAGES: Registry[Any] = Registry("page of a task", {"steering": "jaxleas.viewer.web_page:page_of"})
+"""Pages on which a task's exported policy runs by itself, in a browser."""
+
+TASKS: Registry[type[Task]] = Registry(
+    "task", {"steering": "jaxleas.envs.steering.task:Steering"}, _require_task
+)

@@ -1,0 +1,215 @@
+"""What a policy is shown and what it answers: named parts of an observation, heads of an action.
+
+Between task and network an observation is one vector, all parts one after another, each flattened
+row by row; so storing, scaling, mirroring and learning know nothing of parts.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import prod
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jaxtyping import Float, Key
+
+from jaxleas.envs.heads.head import Head
+from jaxleas.envs.mirror import Mirror
+from jaxleas.xla.split import split
+
+Numbers = float | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of an observation: a vector [n], or a map [rows, columns].
+
+    Attributes:
+        name: name of the part, of its ONNX input, too.
+        shape: of its values.
+        mean: middle of each value's range, in its unit: one number, or one for each value, flat.
+        deviation: half of each value's range, likewise: (value - mean) / deviation is what the
+            network sees.
+        mirror: what becomes of the flattened values when left and right are swapped; None where
+            there is no such symmetry.
+        critic_only: whether the critic alone sees it, in training.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    mean: Numbers = 0.0
+    deviation: Numbers = 1.0
+    mirror: Mirror | None = None
+    critic_only: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return prod(self.shape)
+
+    @property
+    def is_map(self) -> bool:
+        """Whether its values lie on a grid, for networks that have an encoder of maps."""
+        return len(self.shape) == 2
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Parts of the observation and heads of the action, in their order.
+
+    Attributes:
+        parts: parts of the observation.
+        heads: heads of the action.
+    """
+
+    parts: tuple[Part, ...]
+    heads: tuple[Head, ...]
+
+    def __post_init__(self) -> None:
+        for kind, names in (
+            ("parts", [part.name for part in self.parts]),
+            ("heads", [head.name for head in self.heads]),
+        ):
+            if not names or len(set(names)) < len(names):
+                raise ValueError(f"{kind} need names, each one once: {names}")
+        if all(part.critic_only for part in self.parts):
+            raise ValueError("every part of the observation is the critic's alone")
+
+    @cached_property
+    def size(self) -> int:
+        """Values in an observation."""
+        return sum(part.size for part in self.parts)
+
+    @cached_property
+    def seen(self) -> tuple[Part, ...]:
+        """The parts that the actor sees."""
+        return tuple(part for part in self.parts if not part.critic_only)
+
+    @cached_property
+    def scaling(self) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
+        """Mean and deviation of an observation's values."""
+        mean = [_each(part.mean, part.size) for part in self.parts]
+        deviation = [_each(part.deviation, part.size) for part in self.parts]
+        return np.concatenate(mean), np.concatenate(deviation)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether it is known what becomes of everything when left and right are swapped."""
+        return all(part.mirror for part in self.parts) and all(
+            head.symmetric for head in self.heads
+        )
+
+    @cached_property
+    def mirror(self) -> Mirror:
+        """What becomes of an observation when left and right are swapped."""
+        return Mirror.join([part.mirror for part in self.parts if part.mirror is not None])
+
+    def pack(self, observation: Any) -> Any:
+        """Return an observation as one vector.
+
+        Args:
+            observation: arrays [*batch, *shape] by the parts' names; where there is one part, the
+                array alone. JAX's or NumPy's.
+
+        Returns:
+            An array [*batch, size].
+        """
+        if not isinstance(observation, Mapping):
+            observation = {self.parts[0].name: observation}
+        flat = [_flat(observation[part.name], part.shape) for part in self.parts]
+        if len(flat) == 1:
+            return flat[0]
+        return _join(flat)
+
+    def for_actor(self, observation: Any) -> Any:
+        """Return what the actor sees of packed observations: an array [*batch, seen]."""
+        if len(self.seen) == len(self.parts):
+            return observation
+        ends = np.cumsum([part.size for part in self.parts])
+        kept = [
+            observation[..., end - part.size : end]
+            for part, end in zip(self.parts, ends, strict=True)
+            if not part.critic_only
+        ]
+        return kept[0] if len(kept) == 1 else _join(kept)
+
+    @cached_property
+    def action_size(self) -> int:
+        """Numbers in a raw action of all heads."""
+        return sum(head.size for head in self.heads)
+
+    @cached_property
+    def logits(self) -> int:
+        """Numbers that the actor's network answers."""
+        return sum(sum(head.logits) for head in self.heads)
+
+    def distributions(self, logits: Float[Array, "*batch logits"]) -> tuple[Any, ...]:
+        """Return the distribution of each head."""
+        return tuple(
+            head.distribution(*each)
+            for head, each in zip(self.heads, self._by_head(logits), strict=True)
+        )
+
+    def draw_noise(self, key: Key[Array, ""], shape: tuple[int, ...]) -> tuple[Array, ...]:
+        """Draw the chance of samples in bulk, for each head [*shape, noise]."""
+        keys = [key] if len(self.heads) == 1 else jax.random.split(key, len(self.heads))
+        return tuple(
+            head.draw_noise(each, shape) for head, each in zip(self.heads, keys, strict=True)
+        )
+
+    def sample(self, distributions: Sequence[Any], noise: Sequence[Array]) -> Array:
+        """Return raw actions, one vector [*batch, action_size]."""
+        raw = [
+            head.sample(*each) for head, *each in zip(self.heads, distributions, noise, strict=True)
+        ]
+        return raw[0] if len(raw) == 1 else jnp.concatenate(raw, axis=-1)
+
+    def action(self, raw: Float[Array, "*batch action_size"]) -> Any:
+        """Return the action that the environment takes: by head, or of the only head alone."""
+        return self._named(
+            [head.action(each) for head, each in zip(self.heads, self.raw(raw), strict=True)]
+        )
+
+    def mode(self, logits: Float[Array, "*batch logits"]) -> Any:
+        """Return the action without chance, as `action` does."""
+        return self._named(
+            [head.mode(*each) for head, each in zip(self.heads, self._by_head(logits), strict=True)]
+        )
+
+    def command(self, action: Any) -> Any:
+        """Return an action in physical units, by head, or of the only head alone."""
+        if len(self.heads) == 1:
+            return self.heads[0].command(action)
+        return {head.name: head.command(action[head.name]) for head in self.heads}
+
+    def raw(self, raw: Float[Array, "*batch action_size"]) -> tuple[Array, ...]:
+        """Return each head's part of raw actions."""
+        return split(raw, [head.size for head in self.heads])
+
+    def _by_head(self, logits: Array) -> list[tuple[Array, ...]]:
+        sizes = [size for head in self.heads for size in head.logits]
+        parts = iter(split(logits, sizes))
+        return [tuple(next(parts) for _ in head.logits) for head in self.heads]
+
+    def _named(self, each: Sequence[Array]) -> Any:
+        if len(each) == 1:
+            return each[0]
+        return {head.name: value for head, value in zip(self.heads, each, strict=True)}
+
+
+def _each(number: Numbers, size: int) -> np.ndarray:
+    return np.broadcast_to(np.asarray(number, np.float32), size)
+
+
+def _join(parts: list[Any]) -> Any:
+    numpy = all(isinstance(each, np.ndarray) for each in parts)
+    return (np if numpy else jnp).concatenate(parts, axis=-1)
+
+
+def _flat(values: Any, shape: tuple[int, ...]) -> Any:
+    if len(shape) == 1:
+        return values
+    return values.reshape(*values.shape[: values.ndim - len(shape)], prod(shape))

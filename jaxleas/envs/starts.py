@@ -1,0 +1,72 @@
+"""Fresh starts for episodes that are over, on the device; `host_starts` is the twin in NumPy."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+from jaxtyping import Bool, Int, Key
+
+from jaxleas.envs.environment import Starts, select
+
+
+@struct.dataclass
+class StartPool:
+    """Candidates for the next starts, with those that are valid listed first.
+
+    Attributes:
+        state: of each candidate.
+        group: number of the group that each candidate belongs to.
+        order: indices of the candidates, the valid ones first.
+        valid_count: number of valid candidates.
+    """
+
+    state: Any
+    group: Int[Array, " candidates"]
+    order: Int[Array, " candidates"]
+    valid_count: Int[Array, ""]
+
+
+def pool_of(starts: Starts) -> StartPool:
+    """Return starts as a pool: those that are not valid are kept, shapes are fixed, never used."""
+    count = len(starts.valid)
+    return StartPool(
+        state=starts.state,
+        group=starts.group,
+        order=jnp.nonzero(starts.valid, size=count, fill_value=0)[0].astype(jnp.int32),
+        valid_count=jnp.sum(starts.valid, dtype=jnp.int32),
+    )
+
+
+def take(pool: StartPool, key: Key[Array, ""], count: int) -> tuple[Any, Int[Array, " count"]]:
+    """Return the states and groups of `count` valid starts, drawn from the pool."""
+    index = draw_picks(pool, key, (count,))
+    return jax.tree.map(lambda leaf: leaf[index], (pool.state, pool.group))
+
+
+def draw_picks(
+    pool: StartPool, key: Key[Array, ""], shape: tuple[int, ...]
+) -> Int[Array, "*shape"]:
+    """Return indices of valid candidates, each as likely as any other."""
+    # By one random number each, where `randint` takes two; what it is off by is one in 2^13.
+    count = jnp.maximum(pool.valid_count, 1)
+    place = jax.random.uniform(key, shape) * count.astype(jnp.float32)
+    return pool.order[jnp.minimum(place.astype(jnp.int32), count - 1)]
+
+
+def restart_where(
+    done: Bool[Array, " batch"], state: Any, pool: StartPool, pick: Int[Array, " batch"]
+) -> Any:
+    """Give a fresh start to the robots whose episode is over; leave the others alone.
+
+    Args:
+        done: which episodes are over.
+        state: state of the episodes.
+        pool: fresh starts.
+        pick: candidate that each robot would get (`draw_picks`).
+    """
+    # The others look at candidate 0, all at the same one: it stays in the cache.
+    pick = jnp.where(done, pick, 0)
+    fresh = jax.tree.map(lambda leaf: leaf.at[pick].get(mode="promise_in_bounds"), pool.state)
+    return select(done, fresh, state)

@@ -1,0 +1,28 @@
+"""From an observation's physical units to the numbers that a network sees."""
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.envs.steering.layout import MOTION_SIZE
+
+MOST_SURFACES = 8.0  # around a robot, about: on rubble
+
+
+def affine_scaling(
+    size: int,
+    height_range: tuple[float, float],
+    max_speed: float,
+    counts_surfaces: bool = False,
+) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
+    """Return mean and deviation that map an observation's ranges onto [-1, 1].
+
+    Fixed from the task's own bounds, not from data: a running normaliser shrinks the rare heights
+    that matter (field notes: 89 % success instead of 98 %).
+    """
+    low, high = height_range
+    mean, deviation = np.zeros(size, np.float32), np.full(size, max_speed, np.float32)
+    deviation[3] = np.pi
+    mean[MOTION_SIZE:], deviation[MOTION_SIZE:] = (low + high) / 2, (high - low) / 2
+    if counts_surfaces:
+        mean[-1] = deviation[-1] = 0.5 * MOST_SURFACES
+    return mean, deviation

@@ -1,0 +1,107 @@
+"""Steering as a task of the house: its worlds, its starts, and the growing cost of a failure."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import jax
+from jax import Array
+from jaxtyping import Float, Key
+
+from jaxleas.conditions import Condition, Foresight
+from jaxleas.envs.environment import Examination, Starts, Task
+from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.reward import RewardParams
+from jaxleas.envs.steering.starts import draw_starts
+from jaxleas.envs.steering.state import SteeringResult, SteeringState
+from jaxleas.envs.steering.world import KINDS, World, make_world
+from jaxleas.terrain.generator import generate_arena
+
+NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
+
+
+class Steering(Task):
+    """A root that walks towards goals over terrain it sees a little of (T ch. 3).
+
+    Attributes:
+        env: motion, observation, conditions and reward.
+    """
+
+    Config = SteeringConfig
+    Worlds = TerrainConfig
+    groups = KINDS
+
+    def __init__(
+        self,
+        config: SteeringConfig,
+        worlds: TerrainConfig | None = None,
+        condition: Condition | None = None,
+        foresight: Foresight | None = None,
+    ) -> None:
+        """Prepare the task.
+
+        Args:
+            config: configuration of the task.
+            worlds: configuration of its terrain; the default one if None.
+            condition: condition that ends an episode, in place of the configuration's.
+            foresight: condition with memory that ends an episode, too, such as a surrogate of a
+                contact planner.
+        """
+        super().__init__(config, worlds or TerrainConfig())
+        self.env = SteeringEnv(config, condition, foresight)
+
+    def make_world(self, seeds: Sequence[int], examined: bool) -> World:
+        """Generate arenas, rasterise them, and list their links.
+
+        Those of the examination have no boxes, and crossings only: every goal can be reached, so
+        that the score has room to the top and the best policy can be told from the second best.
+
+        Raises:
+            InputError: no arena has a link to cross.
+        """
+        terrain = self.worlds
+        generator, shares = terrain.generator, terrain.shares.model_dump()
+        if examined:
+            clear = generator.obstacles.model_copy(update={"probability": 0.0})
+            generator = generator.model_copy(update={"obstacles": clear})
+            shares |= dict.fromkeys(NOT_CROSSED, 0.0)
+        arenas = [generate_arena(generator, seed) for seed in seeds]
+        return make_world(arenas, terrain.resolution, shares)
+
+    def draw_starts(
+        self, world: World, key: Key[Array, ""], count: int, examined: bool = False
+    ) -> Starts:
+        """Draw candidates: a random link, anywhere in its start area, any heading.
+
+        In training some begin with a random goal; in the examination all have a link to cross.
+        """
+        return draw_starts(self.env, world, key, count, 0.0 if examined else None)
+
+    def stagger(self, state: SteeringState, key: Key[Array, ""]) -> SteeringState:
+        """Return first states as if their episodes had begun at different times."""
+        step = jax.random.randint(key, state.step.shape, 0, self.config.episode_steps)
+        return state.replace(step=step)  # type: ignore[attr-defined]
+
+    def weights(self, numbers: Mapping[str, Any], progress: Any) -> RewardParams:
+        """Return the reward's weights, of which a failure's grows linearly with the training."""
+        return RewardParams.at(numbers, progress)
+
+    def advance(
+        self,
+        world: World,
+        weights: RewardParams,
+        state: SteeringState,
+        action: Float[Array, "*batch 4"],
+        disturbance: Any = (),
+    ) -> tuple[SteeringState, SteeringResult]:
+        """Advance one time step (T eq. 3.3), judge the configuration and reward it."""
+        del disturbance
+        return self.env.advance(world.atlas, weights, state, action)
+
+    def look(self, world: World, state: SteeringState) -> Float[Array, "*batch size"]:
+        """Return what robots see of the terrain, of their motion and of the goal."""
+        return self.env.look(world.atlas, state)
+
+    def examination(self, held_out: Any) -> Examination:
+        """Return the examination: links to cross, the success of all of them."""
+        return Examination(held_out.starts, held_out.steps)

@@ -1,0 +1,227 @@
+"""Where a robot can stand: drawing such places, and saying why it cannot stand elsewhere."""
+
+import math
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from jaxleas.conditions import collision, strict_reachability
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.terrain.atlas import make_atlas
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import InputError, RootMotion, is_ground
+
+HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
+"""A place is one to stand at if any of these headings is valid there [rad]."""
+NEARBY = 0.1
+"""Spacing of the grid on which the nearest valid pose is sought [m]."""
+_AT_ONCE, _FEW = 4096, 16  # poses judged in one compiled call
+
+
+MOST_TRIED = 1_000_000
+"""Points of that grid at most; on larger terrain it is coarser."""
+
+
+class Pose(NamedTuple):
+    """Where an upright root is.
+
+    Attributes:
+        position: of the root in the world [m].
+        yaw: heading [rad].
+    """
+
+    position: Float[np.ndarray, " 3"]
+    yaw: float
+
+
+class Places:
+    """The places of one terrain where a robot can stand, at walking height and at rest."""
+
+    def __init__(self, env: SteeringEnv, terrain: HeightMap):
+        """Prepare.
+
+        Args:
+            env: says what is valid, and how high the robot walks.
+            terrain: to stand on.
+        """
+        self.env, self.terrain = env, terrain
+        self.atlas = make_atlas([terrain])
+        judges = {
+            "strict reachability R*": strict_reachability(env.robot, env.points_in_root),
+            "collision C": collision(env.robot, env.points_in_root),
+            "the condition": env.condition,
+        }
+
+        def judge(motion: RootMotion) -> dict[str, jax.Array]:
+            heights = env.local_heights(self.atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
+            return {name: condition(heights, motion) for name, condition in judges.items()}
+
+        self._judge = jax.jit(judge)
+
+    def root_height(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, " N"]:
+        """Return the root's z at walking height [m]; NaN where there is no ground."""
+        ground = self.terrain.height_at(places).astype(np.float64)
+        return ground + self.env.robot.walking_height
+
+    def standing(
+        self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
+    ) -> RootMotion:
+        """Return roots at rest at walking height; where there is no ground, at that over z = 0."""
+        height = self.root_height(places)
+        height = np.where(is_ground(height), height, self.env.robot.walking_height)
+        position = np.column_stack([places, height]).astype(np.float32)
+        wrapped = wrap_angle_on_host(yaw)
+        return on_host(position, np.zeros_like(position), wrapped.astype(np.float32))
+
+    def margins(
+        self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
+    ) -> dict[str, Float[np.ndarray, " N"]]:
+        """Return the margins [m] of R*, of C and of the environment's condition, by name."""
+        motion = self.standing(places, yaw)
+        parts = []
+        for first in range(0, len(places), _AT_ONCE):
+            some = jax.tree.map(lambda leaf, at=first: leaf[at : at + _AT_ONCE], motion)
+            count = len(some.yaw)
+            size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes serve all
+            padded = jax.tree.map(lambda leaf, n=count, to=size: _padded(leaf, to, n), some)
+            parts.append({k: np.asarray(v)[:count] for k, v in self._judge(padded).items()})
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def valid(
+        self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
+    ) -> Bool[np.ndarray, " N"]:
+        """Tell which poses satisfy the environment's condition above ground."""
+        margin = self.margins(places, yaw)["the condition"]
+        return np.logical_and(margin >= 0.0, is_ground(self.root_height(places)))
+
+    def valid_anyhow(self, places: Float[np.ndarray, "N 2"]) -> Bool[np.ndarray, " N"]:
+        """Tell which places are valid with some heading."""
+        turned = np.tile(HEADINGS, len(places))
+        each = self.valid(np.repeat(places, len(HEADINGS), axis=0), turned)
+        return np.logical_or.reduce(each.reshape(len(places), -1), axis=1)
+
+    def draw(
+        self, rng: np.random.Generator, count: int, clearance: float = 0.0
+    ) -> Float[np.ndarray, "count 2"]:
+        """Draw places uniformly over those of the terrain that are valid with some heading.
+
+        Args:
+            rng: to draw with.
+            count: of places.
+            clearance: as far away in eight directions it must be possible to stand too [m]; 0.3
+                leaves out the tops of narrow boxes, where nobody gets up or down.
+
+        Raises:
+            InputError: there are hardly any.
+        """
+        x_min, x_max, y_min, y_max = self.terrain.extent
+        found: list[np.ndarray] = []
+        for _ in range(100):
+            drawn = rng.uniform((x_min, y_min), (x_max, y_max), (512, 2))
+            drawn = drawn[self.valid_anyhow(drawn)]
+            if clearance > 0.0:
+                around = clearance * np.column_stack([np.cos(HEADINGS), np.sin(HEADINGS)])
+                ring = (drawn[:, None] + around).reshape(-1, 2)
+                drawn = drawn[self.valid_anyhow(ring).reshape(len(drawn), -1).all(axis=1)]
+            found += [*drawn]
+            if len(found) >= count:
+                return np.array(found[:count])
+        raise InputError("there is hardly a place on this terrain where the robot can stand")
+
+    def require_valid(self, name: str, place: tuple[float, float], yaw: float | None) -> Pose:
+        """Return the pose of a robot that stands there.
+
+        Args:
+            name: of the pose, for messages: "--from", say.
+            place: x, y [m].
+            yaw: heading [rad]; None: any that is valid will do.
+
+        Raises:
+            InputError: it cannot stand there: says which condition fails, by how much, and the
+                nearest pose that is valid.
+        """
+        here = np.array([place])
+        headings = HEADINGS if yaw is None else np.array([yaw])
+        valid = self.valid(np.repeat(here, len(headings), axis=0), headings)
+        if valid.any():
+            chosen = float(headings[np.argmax(valid)])
+            return self.pose(here[0], chosen)
+        raise InputError(f"{name} {place[0]:g},{place[1]:g}: {self._why(here, headings, yaw)}")
+
+    def pose(self, place: Float[np.ndarray, " 2"], yaw: float) -> Pose:
+        """Return the pose of a root at walking height; z is NaN where there is no ground."""
+        return Pose(np.array([*place, self.root_height(place[None])[0]]), yaw)
+
+    def why_invalid(
+        self, place: Float[np.ndarray, " 2"], headings: Float[np.ndarray, " H"], facing: str
+    ) -> str:
+        """Return why a robot can stand at a place with none of some headings, and by how much.
+
+        Args:
+            place: x, y [m].
+            headings: headings that were tried [rad].
+            facing: those headings in words: "at yaw 1.5", say.
+        """
+        x_min, x_max, y_min, y_max = self.terrain.extent
+        x, y = place
+        if not (x_min <= x <= x_max and y_min <= y <= y_max):
+            return f"off the map, which spans x {x_min:g} to {x_max:g}, y {y_min:g} to {y_max:g} m"
+        if not is_ground(self.root_height(place[None])[0]):
+            return "there is no ground"
+        margins = self.margins(np.tile(place, (len(headings), 1)), headings)
+        total = margins.pop("the condition")
+        best = int(np.argmax(total))
+        named = {name: float(each[best]) for name, each in margins.items()}
+        failed = [f"{name} fails by {-m:.2f} m" for name, m in named.items() if m < 0.0]
+        own = f"the condition fails by {-float(total[best]):.2f} m"
+        return f"{facing} {' and '.join(failed) or own}"
+
+    def _why(self, here: np.ndarray, headings: np.ndarray, yaw: float | None) -> str:
+        facing = "at any heading" if yaw is None else f"at yaw {yaw:g}"
+        reason = self.why_invalid(here[0], headings, facing)
+        nearest = self.nearest(here[0], yaw)
+        if nearest is None:
+            return f"{reason}; nowhere on this terrain can the robot stand"
+        at, heading = nearest
+        turned = f",{heading:.2f}" if yaw is not None else ""
+        pose, away = f"{at[0]:.2f},{at[1]:.2f}{turned}", math.dist(at, here[0])
+        return f"{reason}; the nearest valid pose is {pose}, {away:.2f} m away"
+
+    def nearest(
+        self, here: Float[np.ndarray, " 2"], yaw: float | None
+    ) -> tuple[tuple[float, float], float] | None:
+        """Return the valid place nearest to a point, on a grid of 0.1 m, and a heading there.
+
+        Of several headings the one nearest to `yaw` is taken.
+        """
+        x_min, x_max, y_min, y_max = self.terrain.extent
+        spacing = max(NEARBY, math.sqrt((x_max - x_min) * (y_max - y_min) / MOST_TRIED))
+        x, y = np.arange(x_min, x_max, spacing), np.arange(y_min, y_max, spacing)
+        grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        grid = np.vstack([here[None], np.round(grid, 2)])
+        order = np.argsort(np.linalg.norm(grid - here, axis=1), kind="stable")
+        wanted = 0.0 if yaw is None else yaw
+        turn = np.concatenate([[0.0], sorted(HEADINGS, key=abs)])
+        for first in range(0, len(grid), 256):
+            some = grid[order[first : first + 256]]
+            headings = np.tile(wanted + turn, len(some))
+            valid = self.valid(np.repeat(some, len(turn), axis=0), headings)
+            if valid.any():
+                index = int(np.argmax(valid))
+                heading = wrap_angle_on_host(headings[index])
+                at = some[index // len(turn)]
+                return (float(at[0]), float(at[1])), float(heading)
+        return None
+
+
+def on_host(position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray) -> RootMotion:
+    """Return a root motion of NumPy arrays: a search looks at it value by value."""
+    return RootMotion(position, velocity, yaw)  # type: ignore[arg-type]
+
+
+def _padded(leaf: np.ndarray, size: int, count: int) -> np.ndarray:
+    return np.concatenate([leaf, np.repeat(leaf[-1:], size - count, axis=0)])

@@ -1,0 +1,198 @@
+"""The commands `jaxleas evaluate` and `jaxleas report`."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import PLANNERS, PlannerName, find_planner
+from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
+from jaxleas.evaluation.contenders import make_contenders, parse_policies
+from jaxleas.evaluation.examination import (
+    examine,
+    keep_evaluation,
+    load_candidate,
+    run_evaluations,
+)
+from jaxleas.evaluation.progress import Reporter
+from jaxleas.evaluation.refusal import load_refusal
+from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
+from jaxleas.evaluation.stage import make_stage
+from jaxleas.evaluation.suites import make_suite
+from jaxleas.labels import PlannerSettings
+from jaxleas.reports.scene_pictures import draw_side_by_side
+from jaxleas.reports.side_by_side import side_by_side as table_of
+from jaxleas.reports.table import plain_table
+from jaxleas.types.errors import InputError
+
+
+def evaluate(
+    run: Path,
+    suite: str = "transitions",
+    starts: int | None = None,
+    json: Path | None = None,
+    baseline: bool = True,
+    seed: int = 0,
+    held_out: bool = False,
+    planners: Sequence[PlannerName] | None = None,
+    methods: Sequence[str] | None = None,
+    policies: Sequence[str] | None = None,
+    time_limit: float | None = None,
+    max_combinations: int | None = None,
+    slack_weights: Literal["uniform", "guide"] | None = None,
+    processes: int | None = None,
+    pictures: Path | None = None,
+    surrogate: Path | None = None,
+    threshold: float | None = None,
+) -> Evaluation:
+    """Judge a policy on terrains it was never trained on, and print the table.
+
+    With --planners (and for the suite thesis always) methods stand side by side, judged by exact
+    contact planners; the result file grows cell by cell, and the same command goes on where it was
+    interrupted.
+
+    Args:
+        run: a run folder, a policy.npz or an .onnx file.
+        suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps, tables
+            or thesis.
+        starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
+        json: where to write the result as well; a run folder keeps the one of most starts in
+            RUN/evaluation/.
+        baseline: judge RB-Lin and RB-Kino beside it.
+        seed: of scenes and starts; training never sees any of them.
+        held_out: judge on terrain to choose and tune by, not on that of evaluation.
+        planners: exact planners that judge, or none; for the suite thesis all that are built in.
+        methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
+            policies; by default all.
+        policies: further ones, each as name=path.
+        time_limit: for one guide path, of mip and sl1m [s]; what is not decided by then counts as
+            not planned.
+        max_combinations: of SL1M for what its relaxation leaves undecided; 0: SL1M without
+            heuristics.
+        slack_weights: of SL1M's slacks: uniform or guide.
+        processes: that plan contacts at the same time; all cores by default.
+        pictures: folder for pictures of the guide paths.
+        surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
+            they end early, as stopped. The result is kept in --json only.
+        threshold: least probability of success, by the surrogate, to go on with: the risk dial.
+
+    Raises:
+        InputError: there is no such policy, suite, planner or method, or a number is out of range.
+    """
+    plan = make_suite(suite, starts, seed, held_out)  # mistakes are told before anything is loaded
+    side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
+    names = _planners(suite, planners)
+    further = parse_policies(_words(policies) or ())
+    if json is not None and json.exists():
+        _require_evaluation(json)
+    if pictures is not None and pictures.exists() and not pictures.is_dir():
+        raise InputError(f"--pictures {pictures} is a file; give a folder, new or there already")
+    if processes is not None and processes < 1:
+        raise InputError(f"--processes is {processes}; give 1 or more")
+    refusal = load_refusal(surrogate, threshold, names)
+    candidate = load_candidate(run, refusal)
+    folder = Path(run) if Path(run).is_dir() and refusal is None else None
+    if not side_by_side:
+        with Reporter() as reporter:
+            evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
+        print(plain_table(evaluation))
+        if folder is not None:
+            keep_evaluation(folder, candidate, evaluation)
+        if json is not None:
+            write_evaluation(json, evaluation)
+            print(f"written: {json}")
+        return evaluation
+    given = {
+        "time_limit": time_limit,
+        "max_combinations": max_combinations,
+        "weights": slack_weights,
+    }
+    contenders = make_contenders(candidate, further, _words(methods))
+    file = json
+    if file is None and folder is not None:
+        file = side_by_side_file(folder, plan)
+    with Reporter() as reporter:
+        evaluation = compare(
+            candidate,
+            contenders,
+            plan,
+            Planning(
+                names,
+                {name: _settings(name, given) for name in names},
+                processes or os.cpu_count() or 1,
+            ),
+            file=file,
+            say=reporter.say,
+        )
+    print(table_of(evaluation))
+    if file is not None:
+        print(f"written: {file}")
+    if pictures is not None:
+        with Reporter() as reporter:
+            drawn = draw_side_by_side(
+                candidate.env, contenders.walkers, plan, names[:1], pictures, reporter.say
+            )
+        print(f"drawn: {len(drawn)} pictures in {pictures}")
+    return evaluation
+
+
+def _require_evaluation(file: Path) -> None:
+    """Refuse to write over what is no evaluation: a scene named by mistake, say."""
+    try:
+        read_evaluation(file)
+    except InputError as error:
+        raise InputError(
+            f"--json {file} is there and holds no evaluation ({error}); remove it, or give another"
+        ) from error
+
+
+def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
+    names = _words(given)
+    if names is None:
+        return tuple(PLANNERS) if suite == "thesis" else ()
+    if names == ["none"]:
+        return ()
+    for name in names:
+        find_planner(name, [name])
+    return tuple(dict.fromkeys(names))
+
+
+def _settings(planner: str, given: dict[str, Any]) -> PlannerSettings:
+    """Return a planner's settings with what is given, as far as the planner has such settings."""
+    found = find_planner(planner, [planner])
+    known = found.settings.model_fields
+    return settings_from(found, **{name: each for name, each in given.items() if name in known})
+
+
+def _words(given: Sequence[str] | None) -> list[str] | None:
+    """Return what was given as words or separated by commas; None where nothing was."""
+    if given is None:
+        return None
+    return [word for text in given for word in text.split(",") if word]
+
+
+def report(run: Path, out: Path | None = None) -> Path:
+    """Write a run's report as one self-contained HTML file.
+
+    Suites that the run was not judged on yet are judged first.
+
+    Args:
+        run: a run folder.
+        out: where to write it; by default RUN/report.html.
+
+    Raises:
+        InputError: it is no run folder, or holds no policy yet.
+    """
+    from jaxleas.reports.report import write_report
+
+    run = Path(run)
+    if not run.is_dir():
+        raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
+    candidate = load_candidate(run)
+    with Reporter() as reporter:
+        stage = make_stage()
+        evaluations = run_evaluations(candidate, run, stage, reporter.say)
+        path = write_report(run, candidate, evaluations, stage, out, reporter.say)
+    print(f"written: {path}")
+    return path

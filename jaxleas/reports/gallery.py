@@ -1,0 +1,230 @@
+"""The pictures of a report: one scene of every kind, many starts, a few paths."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.evaluation.judge import Walk, walk
+from jaxleas.evaluation.stage import Stage
+from jaxleas.evaluation.starts import Grounds, draw_starts
+from jaxleas.evaluation.suites import Cell
+from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.reports.pictures import (
+    GOAL,
+    INVALID,
+    PATH,
+    REACHED,
+    RING,
+    STOPPED,
+    UNPLANNED,
+    View,
+    choose_examples,
+    draw_profile,
+    draw_view,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DOTS = 80
+"""Starts drawn in a picture, as in T fig. 3.14."""
+DPI = 120
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture of the report.
+
+    Attributes:
+        name: of its file, without suffix.
+        caption: a sentence or two.
+        png: the picture.
+    """
+
+    name: str
+    caption: str
+    png: bytes
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """One cell as walked by every method."""
+
+    cell: Cell
+    walks: dict[str, Walk]
+
+
+def draw_gallery(
+    env: SteeringEnv, methods: Mapping[str, SteeringMethod], stage: Stage
+) -> list[Picture]:
+    """Walk one scene of every kind and draw it.
+
+    Args:
+        env: the task.
+        methods: the first is the one that the report is about; a second is drawn beside it.
+        stage: with the cells to be drawn.
+    """
+    grounds = stage.grounds
+    first = next(iter(methods))
+
+    def show(suite: str, name: str, yaw: float, beside: bool = True) -> _Shown:
+        cell = stage.shown[suite, name, yaw]
+        starts = draw_starts(env, grounds, cell, seed=0)
+        walks = {
+            title: walk(env, grounds, method, starts, stage.steps[suite])
+            for title, method in methods.items()
+            if beside or title == first
+        }
+        return _Shown(cell, walks)
+
+    kinds = ("rubble", "bridge", "stairs_down", "stairs_up")
+    transitions = [show("transitions", name, 180.0) for name in kinds]
+    detours = [show("hole", "hole", 0.0), show("wall", "wall", 0.0)]
+    ends = [show("dead_end", name, 0.0, beside=False) for name in ("void", "wall", "platform")]
+    rounds = show("circuit", "circuit", 0.0, beside=False)
+    return [
+        _picture(
+            "transitions",
+            f"The four transitions, {DOTS} starts each, with the back to the goal: yellow dots"
+            " reached it, black ones met an invalid configuration, white ones stopped. Blue:"
+            " example paths, with headings in black.",
+            _transitions(env, grounds, transitions, list(methods)),
+        ),
+        _picture(
+            "profile",
+            "Height profiles on stairs: the root rises and sinks ahead of the steps, so that the"
+            " ground stays within reach of the legs and below the trunk.",
+            _profiles(env, grounds, transitions[2:], first),
+        ),
+        _picture(
+            "detours",
+            "A hole and a wall between starts and goal.",
+            _detours(env, grounds, detours, list(methods)),
+        ),
+        _picture(
+            "circuit",
+            "A circuit over stairs, bridges and rubble: waypoints in order, the last one at the"
+            " start.",
+            _single(env, grounds, rounds, first),
+        ),
+        _picture(
+            "dead_ends",
+            "Dead ends: nothing, a wall, a platform too high. White dots stopped in time and stayed"
+            " valid to the end of the episode.",
+            _ends(env, grounds, ends, first),
+        ),
+    ]
+
+
+def _view(
+    env: SteeringEnv, grounds: Grounds, shown: _Shown, method: str, examples: int, title: str
+) -> View:
+    walked = shown.walks[method]
+    ground = grounds.maps[grounds.index[id(shown.cell.scenarios[0])]]
+    chosen = choose_examples(walked, examples, DOTS)
+    return View(title, ground, walked, chosen, DOTS, env.config.goal_radius)
+
+
+def _title(shown: _Shown, method: str) -> str:
+    reached = shown.walks[method].reached[:DOTS]
+    done = f"{int(reached.sum())} of {len(reached)} reached"
+    return f"{method_title(method)}, {cell_title(shown.cell.name)}: {done}"
+
+
+def _transitions(
+    env: SteeringEnv, grounds: Grounds, shown: list[_Shown], methods: list[str]
+) -> "Figure":
+    figure = _figure(5.6 * len(methods), 2.15 * len(shown) + 0.5)
+    axes = figure.subplots(len(shown), len(methods), squeeze=False)
+    for row, each in zip(axes, shown, strict=True):
+        for ax, method in zip(row, methods, strict=True):
+            draw_view(ax, _view(env, grounds, each, method, 3, _title(each, method)))
+    legend(figure)
+    return figure
+
+
+def _detours(
+    env: SteeringEnv, grounds: Grounds, shown: list[_Shown], methods: list[str]
+) -> "Figure":
+    figure = _figure(4.6 * len(methods), 3.9 * len(shown) + 0.5)
+    axes = figure.subplots(len(shown), len(methods), squeeze=False)
+    for row, each in zip(axes, shown, strict=True):
+        for ax, method in zip(row, methods, strict=True):
+            draw_view(ax, _view(env, grounds, each, method, 6, _title(each, method)))
+    legend(figure)
+    return figure
+
+
+def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) -> "Figure":
+    figure = _figure(3.9 * len(shown), 2.75)
+    axes = figure.subplots(1, len(shown), squeeze=False)[0]
+    for ax, each in zip(axes, shown, strict=True):
+        valid = ~each.walks[method].invalid[:DOTS]
+        title = f"{cell_title(each.cell.name)}: {int(valid.sum())} of {len(valid)} stayed valid"
+        draw_view(ax, _view(env, grounds, each, method, 2, title))
+    widest = max(ax.get_xlim()[1] for ax in axes)
+    for ax in axes:
+        ax.set_xlim(right=widest)  # one scale for all
+    legend(figure)
+    return figure
+
+
+def _single(env: SteeringEnv, grounds: Grounds, shown: _Shown, method: str) -> "Figure":
+    figure = _figure(9.0, 6.0)
+    draw_view(figure.subplots(), _view(env, grounds, shown, method, 1, _title(shown, method)))
+    legend(figure)
+    return figure
+
+
+def _profiles(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) -> "Figure":
+    figure = _figure(5.6 * len(shown), 3.6)
+    axes = figure.subplots(1, len(shown), squeeze=False)[0]
+    for ax, each in zip(axes, shown, strict=True):
+        walked = each.walks[method]
+        far = np.where(walked.reached, -walked.position[:, 0, 0], -np.inf)
+        index = int(np.argmax(far))  # of those that arrived, the one that started farthest
+        ground = grounds.maps[grounds.index[id(each.cell.scenarios[0])]]
+        title = f"{method_title(method)}, {cell_title(each.cell.name)}"
+        draw_profile(ax, env.robot, ground, walked, index, title)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=8)
+    return figure
+
+
+def _figure(width: float, height: float) -> "Figure":
+    from matplotlib.figure import Figure  # not pyplot: no global state, no window
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def legend(figure: "Figure", planner: str | None = None) -> None:
+    """Explain the colours of top views; with a planner's name, those of its answers too."""
+    from matplotlib.lines import Line2D
+
+    def dot(colour: str, edge: str, label: str) -> Line2D:
+        return Line2D([], [], marker="o", linestyle="", color=colour, mec=edge, label=label)
+
+    handles = [
+        dot(REACHED, "#5c4a00", f"start: {f'planned by {planner}' if planner else 'reached'}"),
+        *([dot(UNPLANNED, UNPLANNED, "start: reached, not planned")] if planner else []),
+        dot(STOPPED, RING, "start: stopped"),
+        dot(INVALID, INVALID, "start: invalid"),
+        dot(GOAL, GOAL, "goal"),
+        Line2D([], [], color=PATH, linewidth=2, label="path, heading"),
+        Line2D([], [], marker="x", linestyle="", color=GOAL, mew=2, label="invalid configuration"),
+    ]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=8
+    )
+
+
+def _picture(name: str, caption: str, figure: "Figure") -> Picture:
+    stream = BytesIO()
+    # Without the software's version in it, the same pixels are the same bytes.
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    return Picture(name, caption, stream.getvalue())

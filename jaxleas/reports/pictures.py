@@ -1,0 +1,218 @@
+"""Pictures of walks in the style of T figures 3.14-3.17: top views and height profiles."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.evaluation.judge import Walk
+from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.robots import Robot
+from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import is_ground
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+REACHED, UNPLANNED, INVALID, STOPPED = "#ffd21f", "#e0359b", "#000000", "#ffffff"
+PATH, GOAL, RING = "#1f5fd0", "#e02020", "#1f5fd0"
+ARROW_SPACING, ARROW_TURN = 0.3, 1.0
+"""Between two heading arrows along a path [m], and in turning [rad]."""
+ARROW_LENGTH = 0.15
+"""Of a heading arrow [inches], whatever the picture's scale."""
+MOST_ARROWS = 25
+"""Along one path: a robot that dithers must not be drowned in them."""
+BORDER = 0.12
+"""Void shown around the ground [m]."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a top view shows.
+
+    Attributes:
+        title: above it.
+        ground: the terrain.
+        walk: many roll-outs on that terrain, to one goal.
+        examples: which of them are drawn as paths.
+        dots: how many of them are drawn as starts.
+        radius: within which the goal is reached [m].
+        planned: of the roll-outs, those that an exact planner found contacts for; None: not asked.
+    """
+
+    title: str
+    ground: HeightMap
+    walk: Walk
+    examples: Sequence[int]
+    dots: int
+    radius: float
+    planned: Bool[np.ndarray, " N"] | None = None
+
+
+def choose_examples(walk: Walk, count: int, among: int) -> list[int]:
+    """Return roll-outs that show a cell: starts spread out, one of each kind of failure first.
+
+    Args:
+        walk: of one scene.
+        count: how many, at most.
+        among: the first so many.
+    """
+    horizontal = walk.position[:among, 0, :2]
+    stopped = (~walk.reached & ~walk.invalid)[:among]
+    kinds = [flag for flag in (walk.invalid[:among], stopped) if flag.any() and not flag.all()]
+    chosen = [int(np.flatnonzero(flag)[0]) for flag in kinds][:count]
+    if not chosen:
+        chosen = [int(np.argmin(horizontal.sum(axis=1)))]
+    while len(chosen) < min(count, len(horizontal)):
+        # The start farthest from those chosen: a spread that needs no random numbers.
+        gaps = np.linalg.norm(horizontal[:, None] - horizontal[None, chosen], axis=-1).min(axis=1)
+        chosen.append(int(np.argmax(gaps)))
+    return chosen
+
+
+def draw_view(ax: "Axes", view: View) -> None:
+    """Draw a top view: starts coloured by outcome, the goal, example paths and headings."""
+    draw_height_map(view.ground, ax=ax, colour_bar=False)
+    ax.set_title(view.title, fontsize=10)
+    walk = view.walk
+    shown = np.arange(len(walk.reached)) < view.dots
+    start = walk.position[:, 0, :2]
+    planned = walk.reached if view.planned is None else view.planned
+    outcomes = (
+        (planned, REACHED, "#5c4a00", 0.4),
+        (walk.reached & ~planned, UNPLANNED, "#ffffff", 0.3),
+        (~walk.reached & ~walk.invalid, STOPPED, RING, 1.2),
+        (walk.invalid, INVALID, "#ffffff", 0.3),
+    )
+    for flag, colour, edge, width in outcomes:
+        dots = start[flag & shown]
+        ax.scatter(
+            dots[:, 0], dots[:, 1], s=20, c=colour, edgecolors=edge, linewidths=width, zorder=3
+        )
+    for index in view.examples:
+        _draw_path(ax, walk, index)
+    _draw_goals(ax, np.asarray(walk.starts.waypoints)[view.examples[0]], view.radius)
+    _crop(ax, view.ground, np.asarray(walk.starts.waypoints)[view.examples[0]])
+    ax.set(xlabel="", ylabel="")
+    ax.tick_params(labelsize=7)
+
+
+def _crop(ax: "Axes", ground: HeightMap, waypoints: Float[np.ndarray, "W 3"]) -> None:
+    """Leave out the void around the ground, but no goal that lies in it."""
+    rows, columns = np.nonzero(np.isfinite(ground.heights))
+    x = np.concatenate([ground.origin[0] + ground.resolution * columns, waypoints[:, 0]])
+    y = np.concatenate([ground.origin[1] + ground.resolution * rows, waypoints[:, 1]])
+    ax.set_facecolor(VOID_COLOUR)
+    ax.set_xlim(x.min() - BORDER, max(x.max(), waypoints[:, 0].max() + BORDER) + BORDER)
+    ax.set_ylim(y.min() - BORDER, y.max() + BORDER)
+
+
+def _draw_path(ax: "Axes", walk: Walk, index: int) -> None:
+    path, yaw = walk.path(index), walk.yaw[index]
+    ax.plot(path[:, 0], path[:, 1], color=PATH, linewidth=1.6, zorder=4)
+    at = arrow_indices(path, yaw[: len(path)])
+    ax.quiver(
+        path[at, 0],
+        path[at, 1],
+        np.cos(yaw[at]),
+        np.sin(yaw[at]),
+        units="inches",
+        scale=1.0 / ARROW_LENGTH,
+        width=0.014,
+        headwidth=4.5,
+        headlength=5.0,
+        headaxislength=4.5,
+        color="black",
+        zorder=5,
+    )
+    if walk.invalid[index]:
+        ax.plot(
+            path[-1, 0], path[-1, 1], "x", color=GOAL, markersize=7, markeredgewidth=2, zorder=7
+        )
+
+
+def arrow_indices(
+    path: Float[np.ndarray, "T 3"], yaw: Float[np.ndarray, " T"]
+) -> Int[np.ndarray, " K"]:
+    """Return where along a path arrows show its heading: evenly by distance and by turning."""
+    moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1) / ARROW_SPACING
+    turned = np.abs(wrap_angle_on_host(np.diff(yaw))) / ARROW_TURN
+    travelled = np.concatenate([[0.0], np.cumsum(moved + turned)])
+    spacing = max(1.0, travelled[-1] / MOST_ARROWS)
+    wanted = np.arange(0.0, travelled[-1] + 1e-9, spacing)
+    return np.unique(np.searchsorted(travelled, np.minimum(wanted, travelled[-1])))
+
+
+def _draw_goals(ax: "Axes", waypoints: Float[np.ndarray, "W 3"], radius: float) -> None:
+    from matplotlib.patches import Circle
+
+    for order, (x, y, _) in enumerate(waypoints):
+        ax.add_patch(Circle((x, y), radius, fill=False, color=GOAL, linewidth=1.0, zorder=6))
+        ax.plot(x, y, "o", color=GOAL, markersize=4, zorder=6)
+        if len(waypoints) > 1:
+            ax.annotate(
+                str(order + 1),
+                (x, y),
+                xytext=(7, 7),
+                textcoords="offset points",
+                color=GOAL,
+                fontsize=10,
+                fontweight="bold",
+                zorder=8,
+            )
+
+
+def draw_profile(
+    ax: "Axes", robot: Robot, ground: HeightMap, walk: Walk, index: int, title: str
+) -> None:
+    """Draw the height profile of one path: the ground below it, the root, and what legs reach.
+
+    The band is the legs' range of motion straight below the root; R* asks that ground lies in
+    it somewhere within 0.1 m, C that the ground stays below the trunk's underside.
+
+    Args:
+        ax: to draw on.
+        robot: whose legs and trunk.
+        ground: terrain.
+        walk: many roll-outs on it.
+        index: of the one drawn.
+        title: above the picture.
+    """
+    path = walk.path(index)
+    moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
+    distance = np.concatenate([[0.0], np.cumsum(moved)])
+    low, high = reach_below_root(robot)
+    underside = min(float(box.low[2]) for box in robot.trunk)
+    # Finer than the guide path, so that risers are drawn upright.
+    fine = np.linspace(0.0, distance[-1], 1 + 4 * len(path))
+    x, y, root = (np.interp(fine, distance, path[:, axis]) for axis in range(3))
+    height = ground.height_at(np.column_stack([x, y])).astype(np.float64)
+    distance = fine
+    floor = float(np.nanmin(height)) - 0.25
+    solid = np.where(is_ground(height), height, floor)
+
+    ax.fill_between(distance, floor, solid, color="0.55", linewidth=0, label="ground")
+    ax.fill_between(
+        distance, root + low, root + high, color="#2e9e4f", alpha=0.3, linewidth=0,
+        label="within reach of the legs",
+    )  # fmt: skip
+    ax.plot(distance, root + underside, color=GOAL, linewidth=1, label="underside of the trunk")
+    ax.plot(distance, root, color=PATH, linewidth=2, label="root")
+    ax.set_title(title, fontsize=9)
+    ax.set(xlabel="distance along the path [m]", ylabel="height [m]", ylim=(floor, None))
+    ax.margins(x=0.0)
+    ax.tick_params(labelsize=7)
+    ax.grid(color="0.9", linewidth=0.5)
+    ax.set_axisbelow(True)
+
+
+def reach_below_root(robot: Robot) -> tuple[float, float]:
+    """Return the lowest and highest effector position straight below the root [m], any limb's."""
+    under = np.array([[0.0, side * 0.05] for side in (-1, 0, 1)])
+    intervals = [limb.range_of_motion.z_interval(under) for limb in robot.limbs]
+    low = min(float(np.nanmin(each[0])) for each in intervals)
+    high = max(float(np.nanmax(each[1])) for each in intervals)
+    return low, high

@@ -1,0 +1,139 @@
+"""The small examination during training: how many held-out starts does the policy bring home?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from jaxleas.envs.environment import Examination, Task
+from jaxleas.envs.host_starts import HostPool
+from jaxleas.envs.starts import pool_of, take
+from jaxleas.training.config import RunConfig
+from jaxleas.training.networks import ActorCritic
+from jaxleas.training.normaliser import normalise
+from jaxleas.training.ppo_params import PpoParams
+from jaxleas.training.walkers.host import look
+
+# Of the examination's own draws: the same starts at every examination of every run.
+EXAMINATION_KEY = 20_210_530
+REACHED = "held_out/reached"
+Examine = Callable[[Any, Any, Any], dict[str, Any]]
+
+
+def make_examination(
+    config: RunConfig,
+    task: Task,
+    networks: ActorCritic,
+    divide: Callable[[Any], Any] = lambda robots: robots,
+) -> Examine:
+    """Return the examination: (held-out world, normaliser, policy) -> fractions of starts.
+
+    Every robot walks, by the policy's mode, until it reaches its goal, fails, or the time is up;
+    all stop early when none walks any more. It is pure; jit it. `HostExaminer` is its twin.
+
+    Args:
+        config: configuration of the run.
+        task: task that steps on the device.
+        networks: actor and critic.
+        divide: lays arrays with one entry a robot out over several devices.
+    """
+    examination = task.examination(config.held_out)
+    weights = task.weights(PpoParams.of(config).task, 0.0)
+    signature = task.signature
+
+    def examine(world: Any, normaliser: Any, policy: Any) -> dict[str, Array]:
+        pool_key, take_key = jax.random.split(jax.random.key(EXAMINATION_KEY))
+        disturbance_key = jax.random.key(EXAMINATION_KEY + 1)
+        pool = pool_of(task.draw_starts(world, pool_key, 2 * examination.starts, examined=True))
+        episode, group = divide(take(pool, take_key, examination.starts))
+        none = jnp.zeros(examination.starts, dtype=bool)
+
+        def some_walk(carry):
+            step, _, reached, failed = carry
+            return (step < examination.steps) & ~jnp.all(reached | failed)
+
+        def advance(carry):
+            step, episode, reached, failed = carry
+            seen = normalise(signature.pack(task.look(world, episode)), normaliser)
+            action = signature.mode(networks.judged(policy, seen))
+            disturbance = ()
+            if task.is_disturbed:
+                now = jax.random.fold_in(disturbance_key, step)
+                drawn = task.draw_disturbances(now, (1, examination.starts))
+                disturbance = jax.tree.map(lambda leaf: leaf[0], drawn)
+            episode, result = task.advance(world, weights, episode, action, disturbance)
+            walking = ~(reached | failed)
+            reached = reached | (walking & result.reached)
+            failed = failed | (walking & result.terminated)
+            return step + 1, episode, reached, failed
+
+        carry = (jnp.int32(0), episode, none, none)
+        _, _, reached, failed = jax.lax.while_loop(some_walk, advance, carry)
+        return _fractions(examination, task.groups, reached, failed, group)
+
+    return examine
+
+
+@dataclass
+class HostExaminer:
+    """The examination of a task that steps on the host; called as `make_examination`'s function.
+
+    Attributes:
+        config: configuration of the run.
+        task: task that steps on the host.
+        networks: actor and critic.
+    """
+
+    config: RunConfig
+    task: Task
+    networks: ActorCritic
+
+    def __post_init__(self) -> None:
+        signature, networks = self.task.signature, self.networks
+
+        def act(normaliser: Any, policy: Any, observation: Array) -> Any:
+            return signature.mode(networks.judged(policy, normalise(observation, normaliser)))
+
+        self._act = jax.jit(act)
+
+    def __call__(self, world: Any, normaliser: Any, policy: Any) -> dict[str, Any]:
+        """Return the fractions of starts that reached, failed and stopped."""
+        task, examination = self.task, self.task.examination(self.config.held_out)
+        generator = np.random.default_rng(EXAMINATION_KEY)
+        numbers: Mapping[str, Any] = PpoParams.of(self.config).task
+        weights = task.weights(jax.tree.map(float, numbers), 0.0)
+        starts = task.draw_starts(world, generator, 2 * examination.starts, examined=True)
+        pool = HostPool.of(starts)
+        episode, group = pool.take(pool.draw_picks(generator, (examination.starts,)))
+        reached = failed = np.zeros(examination.starts, dtype=bool)
+        for _ in range(examination.steps):
+            if np.all(reached | failed):
+                break
+            action = jax.device_get(self._act(normaliser, policy, look(task, world, episode)))
+            drawn = task.draw_disturbances(generator, (1, examination.starts))
+            disturbance = jax.tree.map(lambda leaf: leaf[0], drawn)
+            episode, result = task.advance(world, weights, episode, action, disturbance)
+            walking = ~(reached | failed)
+            reached = reached | (walking & result.reached)
+            failed = failed | (walking & result.terminated)
+        return _fractions(examination, task.groups, reached, failed, group)
+
+
+def _fractions(
+    examination: Examination, groups: tuple[str, ...], reached: Any, failed: Any, group: Any
+) -> dict[str, Any]:
+    """Return the fractions of all starts, and of each cell that is told apart."""
+    found = {
+        REACHED: reached.mean(),
+        "held_out/invalid": failed.mean(),
+        "held_out/stopped": (~reached & ~failed).mean(),
+    }
+    for cell in examination.cells:
+        inside = group == groups.index(cell)
+        # A cell without starts has no success: NaN is logged as null.
+        found[f"{REACHED}/{cell}"] = (reached & inside).sum() / inside.sum()
+    return found

@@ -1,0 +1,82 @@
+"""What a network is: one vector in, one out, in training, judged, as arrays and as ONNX nodes."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from jax import Array
+from jaxtyping import Bool, Float, Key
+
+from jaxleas.types.onnx_nodes import OnnxNodes
+
+
+class Network(Protocol):
+    """A kind of network of some sizes; frozen and hashable, its parameters are apart.
+
+    Attributes:
+        inputs: length of what it is given: an observation's normalised values.
+        outputs: length of its answer.
+        activation: name of the activation between layers.
+    """
+
+    @property
+    def activation(self) -> str:
+        """Name of the activation between layers."""
+        ...
+
+    @property
+    def inputs(self) -> int:
+        """Length of what it is given."""
+        ...
+
+    @property
+    def outputs(self) -> int:
+        """Length of its answer."""
+        ...
+
+    def init(self, key: Key[Array, ""]) -> Any:
+        """Return untrained parameters, a pytree."""
+        ...
+
+    def answer(
+        self,
+        params: Any,
+        rows: Float[Array, "*batch inputs"],
+        numbers: str = "float32",
+        always: Bool[Array, ""] | None = None,
+    ) -> Float[Array, "*batch outputs"]:
+        """Return its answer, float32, as training computes it.
+
+        Args:
+            params: its parameters.
+            rows: normalised observations.
+            numbers: type in which products are taken.
+            always: true, and not known to the compiler (`xla.dense`).
+        """
+        ...
+
+    def plain(
+        self, params: Any, rows: Float[Array, "*batch inputs"]
+    ) -> Float[Array, "*batch outputs"]:
+        """Return its answer as it is judged and exported: float32, arranged for no device."""
+        ...
+
+    def arrays(self, params: Any) -> dict[str, Array]:
+        """Return its parameters as named plain arrays."""
+        ...
+
+    def parameters(self, arrays: Mapping[str, np.ndarray]) -> Any:
+        """Return the parameters that `arrays` took apart.
+
+        Raises:
+            ValueError: an array is missing or of another shape.
+        """
+        ...
+
+    def onnx(self, nodes: OnnxNodes, params: Any, rows: str) -> str:
+        """Add the nodes that compute `plain`; return the name of the answer."""
+        ...
+
+    def describe(self) -> dict[str, Any]:
+        """Return its kind and sizes as plain JSON values: `network_described` reads them."""
+        ...

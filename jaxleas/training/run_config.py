@@ -1,0 +1,86 @@
+"""Reading the configuration of a run: which task it is of decides what its sections hold."""
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+from jaxleas.configuration.loading import Layers, layers_of, load_layers, validate
+from jaxleas.envs.environment import Task
+from jaxleas.envs.registry import DEFAULT_TASK, TASKS
+from jaxleas.training.config import RunConfig
+from jaxleas.types.errors import InputError
+
+AnyRun = RunConfig[Any, Any]
+
+
+def load_run_config(
+    path: str | Path, overrides: Sequence[str] = (), allow: Collection[str] = ()
+) -> AnyRun:
+    """Return the configuration of a run that a YAML file and the command line state together.
+
+    Args:
+        path: the YAML file.
+        overrides: arguments such as `--ppo.discount 0.97` (`load_config`).
+        allow: code of the user's own that may be run, each MODULE:CLASS.
+
+    Raises:
+        InputError: one sentence that names the file (or the command line), the key, what was
+            given, and what would do.
+    """
+    layers = layers_of(path)
+    stated = [("command line", _stated_task(overrides)), *reversed(layers)]
+    return load_layers(_model(stated, allow), layers, overrides)
+
+
+def parse_run_config(document: Any, source: str, allow: Collection[str] = ()) -> AnyRun:
+    """Return the configuration of a run that plain JSON values state.
+
+    Args:
+        document: mapping of the sections.
+        source: what an error's sentence begins with.
+        allow: code of the user's own that may be run, each MODULE:CLASS.
+
+    Raises:
+        InputError: one sentence that names the source, the key, and what would do.
+    """
+    layers = [(source, document if isinstance(document, dict) else {})]
+    return validate(_model(layers, allow), layers)
+
+
+def run_config_of(task: str, allow: Collection[str] = ()) -> type[AnyRun]:
+    """Return the type of a task's run configurations.
+
+    Raises:
+        InputError: there is no such task, or its code may not be run.
+    """
+    found = TASKS.find(task, allow)
+    return RunConfig[found.Config, found.Worlds]  # type: ignore[name-defined]
+
+
+def make_task(config: AnyRun, allow: Collection[str] = ()) -> Task:
+    """Return the task of a run.
+
+    Raises:
+        InputError: there is no such task, its code may not be run, or it cannot be made.
+    """
+    return TASKS.find(config.env.task, allow).make(config.env, config.terrain, allow)
+
+
+def _model(strongest_first: Layers, allow: Collection[str]) -> type[AnyRun]:
+    for source, stated in strongest_first:
+        section = stated.get("env")
+        if isinstance(section, dict) and isinstance(section.get("task"), str):
+            try:
+                return run_config_of(section["task"], allow)
+            except InputError as error:
+                raise InputError(f"{source}: env.task: {error}") from error
+    return run_config_of(DEFAULT_TASK)
+
+
+def _stated_task(overrides: Sequence[str]) -> dict[str, Any]:
+    for index, option in enumerate(overrides):
+        name, equals, value = option.partition("=")
+        if name == "--env.task":
+            value = value if equals else next(iter(overrides[index + 1 : index + 2]), "")
+            return {"env": {"task": value}}
+    return {}

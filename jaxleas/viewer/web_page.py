@@ -1,0 +1,105 @@
+"""A page on which an exported policy walks by itself: static files, for any web host."""
+
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.description import describe_steering
+from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.layout import layout_named
+from jaxleas.files import write_bytes, write_json
+from jaxleas.guide.onnx_policy import read_onnx_policy
+from jaxleas.guide.standing import Pose, choose_start, require_start
+from jaxleas.robots import Robot
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import InputError
+from jaxleas.viewer.web_runtime import RUNTIME_FILES, runtime_folder
+
+SOURCES = ("walk.js", "page.js", "page.css", "index.html")
+MOST_CELLS = 4_000_000
+"""A visitor downloads four bytes a cell."""
+
+
+def page_of(
+    folder: Path,
+    file: Path,
+    terrain: HeightMap,
+    start: tuple[float, float, float] | None,
+    runtime: Path | None,
+) -> None:
+    """Write the page of an ONNX file (`write_page`)."""
+    config = read_onnx_policy(file).config
+    write_page(folder, file.read_bytes(), config, terrain, start, runtime)
+
+
+def write_page(
+    folder: str | Path,
+    policy: bytes,
+    config: SteeringConfig,
+    terrain: HeightMap,
+    start: tuple[float, float, float] | None = None,
+    runtime: Path | None = None,
+) -> None:
+    """Write the page: open `index.html` through any web server.
+
+    Args:
+        folder: gets some ten files, one of them onnxruntime (14 MB).
+        policy: content of an ONNX file.
+        config: of the policy.
+        terrain: to walk on.
+        start: x, y [m] and heading [deg]; by default a place with room around it.
+        runtime: the `dist` folder of onnxruntime-web, if npm is not to fetch it.
+
+    Raises:
+        InputError: the terrain is too large or the start invalid, the page cannot make the policy's
+            observation, or a file cannot be written.
+    """
+    if layout_named(config.observation).counts_surfaces:
+        raise InputError(
+            f"a page does not count surfaces, as the observation {config.observation} asks for:"
+            " export a policy of another layout"
+        )
+    if terrain.heights.size > MOST_CELLS:
+        raise InputError(
+            f"a terrain of {terrain.heights.size} cells is too large for a page, which takes"
+            f" {MOST_CELLS}; import it at a coarser --resolution"
+        )
+    env = SteeringEnv(config)
+    pose = choose_start(env, terrain) if start is None else require_start(env, terrain, start)
+    library = runtime_folder(runtime)
+    folder = Path(folder)
+    for name in RUNTIME_FILES:
+        write_bytes(folder / name, (library / name).read_bytes())
+    write_bytes(folder / "policy.onnx", policy)
+    write_bytes(folder / "heights.bin", terrain.heights.astype("<f4").tobytes())
+    write_json(folder / "page.json", page_description(config, env.robot, terrain, pose))
+    for name in SOURCES:  # index.html last: a page that can be opened is whole
+        write_bytes(folder / name, (resources.files("jaxleas.viewer") / "page" / name).read_bytes())
+
+
+def page_description(
+    config: SteeringConfig, robot: Robot, terrain: HeightMap, start: Pose
+) -> dict[str, Any]:
+    """Return what the page's scripts must know, as `page.json` holds it."""
+    stated = describe_steering(config)
+    low = np.min([box.low for box in robot.trunk], axis=0)
+    high = np.max([box.high for box in robot.trunk], axis=0)
+    rows, columns = terrain.shape
+    return {
+        "observation": stated["observation"],
+        "command": stated["command"],
+        "robot": robot.name,
+        "walking_height": robot.walking_height,
+        "goal_radius": config.goal_radius,
+        "trunk": [low[:2].tolist(), high[:2].tolist()],
+        "start": {"position": start.position[:2].tolist(), "yaw": start.yaw},
+        "terrain": {
+            "rows": rows,
+            "columns": columns,
+            "resolution": terrain.resolution,
+            "origin": list(terrain.origin),
+        },
+    }

@@ -1,0 +1,1 @@
+"""Files from strangers: valid ones of every kind, mutated, and what the readers make of them."""
