@@ -86,6 +86,7 @@ RECIPE = Recipe(
     whole=lambda recipe: pin.neutral(recipe.model),
     reach=(0.30, 0.26),
     step=(0.27, 0.12),
+    contact_window=(0.55, 0.38),
     limits={0: (-2.1, 0.8), 1: (-0.5236, 0.8), 2: (-0.6, 1.2), 3: (0.0, 2.7)},
 )
 

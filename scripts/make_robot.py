@@ -160,6 +160,7 @@ def make(recipe: Recipe, samples: int, pairs: int, seed: int) -> Robot:
         friction=recipe.friction,
         foot_half_size=recipe.half_size,
         start_heights=recipe.start_heights,
+        contact_window=recipe.contact_window,
         steps=polytopes,
         body=body,
     )

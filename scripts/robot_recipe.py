@@ -50,6 +50,7 @@ class Recipe:
         whole: returns the reference configuration of the whole robot, as Pinocchio counts it.
         reach: largest |x| and y of the middle of the left sole [m].
         step: longest step forwards or backwards, and least distance sideways of the soles [m].
+        contact_window: how far ahead and to a side the contacts of the next stretch may lie [m].
         limits: limits of joints that are narrower than the URDF's, by index [rad].
         knee: index of the knee among the leg's joints.
         digits: number of decimals that limits, masses and centres of mass keep.
@@ -73,6 +74,7 @@ class Recipe:
     whole: Callable[["Recipe"], np.ndarray]
     reach: tuple[float, float]
     step: tuple[float, float]
+    contact_window: tuple[float, float] = (0.65, 0.45)
     limits: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     knee: int = 3
     digits: int = 6

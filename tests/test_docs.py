@@ -101,6 +101,9 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
                 assert f'"{option}"' in source, f"{module} has no {option}"
         case ["python", script, *arguments]:
             source = (ROOT / script).read_text(encoding="utf-8")
+            for beside in (ROOT / script).parent.glob("*.py"):  # the module that it hands over to
+                if f"from {beside.stem} import" in source:
+                    source += beside.read_text(encoding="utf-8")
             for option in (each for each in arguments if each.startswith("--")):
                 assert f'"{option}"' in source, f"{script} has no {option}"
         case ["make", target, *variables]:

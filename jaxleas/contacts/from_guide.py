@@ -84,7 +84,7 @@ def problem_from_guide(
     turn = _first(described, feet, first_foot)
     surfaces = {
         name: make_surface(vertices, f"surface '{name}' of the scene")
-        for name, vertices in scene.surfaces.items()
+        for name, vertices in scene.walkable.items()
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)

@@ -69,4 +69,4 @@ def scene_of_problem(problem: ContactProblem) -> Scene:
     surfaces = {name: each for name, each in whole.items() if name not in walls}
     if not surfaces:
         raise InputError("the problem has no surface but walls: no foot can stand on one")
-    return Scene(surfaces, walls)
+    return Scene(surfaces, walls, touch=dict.fromkeys(surfaces, "feet"))

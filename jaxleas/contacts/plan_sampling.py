@@ -118,7 +118,7 @@ def walked_problem(
         model="feet",
         surfaces={
             name: make_surface(vertices, f"surface '{name}' of the scene")
-            for name, vertices in scene.surfaces.items()
+            for name, vertices in scene.walkable.items()
         },
         initial=postures[0].feet if postures else {},
         phases=tuple(
@@ -138,7 +138,7 @@ def walked_problem(
 
 def _require_over(scene: Scene, guide: GuidePath) -> None:
     """Refuse a guide that leaves the rectangle around all surfaces by more than a leg's length."""
-    corners = np.concatenate([np.asarray(each)[:, :2] for each in scene.surfaces.values()])
+    corners = np.concatenate([np.asarray(each)[:, :2] for each in scene.walkable.values()])
     roots = np.asarray(guide.position, np.float64)
     beyond = np.maximum(corners.min(axis=0) - roots[:, :2], roots[:, :2] - corners.max(axis=0))
     outside = np.flatnonzero(beyond.max(axis=1) > MOST_BEYOND)

@@ -158,6 +158,10 @@ def _require_fitting(plan: ContactPlan, guide: GuidePath, scene: Scene) -> tuple
         for foot, name in posture.surfaces.items():
             if name not in scene.surfaces:
                 raise InputError(f"posture {number}: {foot} stands on '{name}', not in this scene")
+            if name not in scene.walkable:
+                raise InputError(
+                    f"posture {number}: {foot} stands on '{name}', which feet may not touch"
+                )
     made = [posture for posture in plan.postures if posture.moved]
     footholds = np.array([each.feet[each.moved].position for each in made if each.moved])
     stated = np.zeros((0, 3)) if plan.footholds is None else plan.footholds

@@ -5,7 +5,6 @@ floors, walls, ceilings.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +16,7 @@ from jaxleas.contacts.certificate import TOLERANCE
 from jaxleas.dynamics import ContactPoints, exact_robustness
 from jaxleas.dynamics.equilibrium import GRAVITY
 from jaxleas.robots import Robot
+from jaxleas.terrain.scene import Scene
 from jaxleas.types import Contact, InputError, RootPose, Stance
 
 _SIDES = 256
@@ -30,7 +30,8 @@ class StanceCertificate:
     """What was found.
 
     Attributes:
-        metres: by how much the worst geometric constraint is violated [m].
+        metres: by how much the worst geometric constraint is violated [m]; infinite where an
+            effector is on a surface that it may not touch.
         constraint: which one, in a few words.
         robustness: robustness of equilibrium with exact friction cones [N]; below 0 it falls.
         overload: share of the weight that limited forces leave; 0 where no force is limited.
@@ -49,6 +50,8 @@ class StanceCertificate:
     @property
     def complaint(self) -> str:
         """What is wrong, as the end of a sentence; empty if nothing is."""
+        if math.isinf(self.metres):
+            return f"has {self.constraint}"
         if not self.metres <= TOLERANCE:
             return f"violates {self.constraint} by {self.metres:.3g} m"
         if not self.robustness >= 0.0:
@@ -65,7 +68,7 @@ def certify_stance(
     robot: Robot,
     root: RootPose,
     stance: Stance,
-    surfaces: Mapping[str, Float[np.ndarray, "V 3"]],
+    scene: Scene,
     com: Float[np.ndarray, " 3"],
 ) -> StanceCertificate:
     """Check a stance: contacts on surfaces, in reach of the root, in static equilibrium.
@@ -74,7 +77,7 @@ def certify_stance(
         robot: robot that stands.
         root: pose of its root in the world.
         stance: contacts, at least one.
-        surfaces: convex polygons by name, counter-clockwise seen from the side that is touched [m].
+        scene: surfaces of any orientation, and who may touch them.
         com: centre of mass in the world [m].
 
     Raises:
@@ -84,14 +87,25 @@ def certify_stance(
         raise InputError("a stance without contacts cannot be certified: nothing carries the robot")
     found = []
     for name, contact in stance.contacts.items():
-        if contact.surface not in surfaces:
-            raise InputError(f"{name} is on '{contact.surface}', which is no surface given here")
-        found += _on_surface(robot, contact, np.asarray(surfaces[contact.surface], np.float64))
+        if contact.surface not in scene.surfaces:
+            raise InputError(f"{name} is on '{contact.surface}', which is no surface of the scene")
+        found.append(_permitted(robot, contact, scene))
+        polygon = np.asarray(scene.surfaces[contact.surface], np.float64)
+        found += _on_surface(robot, contact, polygon)
         found.append(_reach(robot, root, contact))
     metres, constraint = max(found)
     contacts = _contact_points(robot, stance)
     robustness = exact_robustness(contacts, com, mass=robot.mass)
     return StanceCertificate(metres, constraint, robustness, _overload(robot, stance, com))
+
+
+def _permitted(robot: Robot, contact: Contact, scene: Scene) -> tuple[float, str]:
+    """Say whether an effector of this kind may touch the surface."""
+    stands = robot.effector(contact.effector).stands
+    allowed, kind = (scene.walkable, "feet") if stands else (scene.pressable, "palms")
+    wrong = contact.surface not in allowed
+    text = f"{contact.effector} on '{contact.surface}', which {kind} may not touch"
+    return (math.inf if wrong else -math.inf), text
 
 
 def _on_surface(robot: Robot, contact: Contact, polygon: np.ndarray) -> list[tuple[float, str]]:

@@ -24,7 +24,8 @@ from jaxleas.types.errors import InputError
 def read_robot(path: str | Path) -> Robot:
     """Return the robot described by a JSON file.
 
-    Files without `effector`, `reference`, `start_heights` or `steps` are those of earlier versions:
+    Files without `effector`, `reference`, `start_heights`, `contact_window` or `steps` are those of
+    earlier versions:
     their robots get feet of the file's `foot_half_size` and `friction`.
 
     Raises:
@@ -34,9 +35,10 @@ def read_robot(path: str | Path) -> Robot:
     try:
         half_length, half_width = described["foot_half_size"]
         optional = {}
-        if "start_heights" in described:
-            low, high = described["start_heights"]
-            optional["start_heights"] = (float(low), float(high))
+        for key in ("start_heights", "contact_window"):
+            if key in described:
+                one, other = described[key]
+                optional[key] = (float(one), float(other))
         return Robot(
             name=str(described["name"]),
             limbs=_limbs(described["limbs"]),
@@ -72,6 +74,7 @@ def write_robot(path: str | Path, robot: Robot, **notes: Any) -> None:
         "walking_height": robot.walking_height,
         "foot_half_size": list(robot.foot_half_size),
         "start_heights": list(robot.start_heights),
+        "contact_window": list(robot.contact_window),
         "trunk": [{"low": list(box.low), "high": list(box.high)} for box in robot.trunk],
         "limbs": [
             {

@@ -53,6 +53,8 @@ class Robot:
         friction: friction coefficient mu of feet that state none of their own [1].
         foot_half_size: half length and half width of the soles of feet that state none [m].
         start_heights: lowest and highest start of an episode, above the walking height [m].
+        contact_window: how far ahead of the root, and to a side of it, the contacts of the next
+            stretch of a walk may lie: what a surrogate is shown of the terrain [m].
         steps: polytopes of steps, by name: "RF_in_LF" is where the right foot can be in the frame
             of the left one, "COM_in_LF" where the centre of mass can be [m]; empty where the
             robot's file has none.
@@ -60,7 +62,7 @@ class Robot:
             file has none.
 
     Raises:
-        InputError: two limbs or two effectors share a name, or the start heights are no interval.
+        InputError: two limbs or two effectors share a name, or a number is out of range.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Robot:
     friction: float
     foot_half_size: tuple[float, float]
     start_heights: tuple[float, float] = (-0.20, 0.07)
+    contact_window: tuple[float, float] = (0.65, 0.45)
     steps: Mapping[str, Polytope] = field(default_factory=dict)
     body: Body | None = None
 
@@ -89,6 +92,11 @@ class Robot:
             raise InputError(
                 f"robot '{self.name}': start_heights must be a lowest and a highest height above"
                 f" the walking height [m], not {low}, {high}"
+            )
+        if not (np.isfinite(self.contact_window).all() and min(self.contact_window) > 0.0):
+            raise InputError(
+                f"robot '{self.name}': contact_window must be two positive distances [m], not"
+                f" {self.contact_window}"
             )
 
     @property

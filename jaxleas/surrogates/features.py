@@ -13,18 +13,21 @@ MOTION_FEATURES = 7  # displacement, turn, velocity
 _SPEED = 0.1  # [m/s]
 _TIME_STEP = 0.2  # [s]
 _TURN = 0.07  # in one time step at the greatest turn rate [rad]
-# How far contacts of the next stretch may lie from the root: what is beyond teaches nothing.
-_AHEAD, _BESIDE = 0.65, 0.45  # [m]
 
 
-def near_points(points_in_root: Float[np.ndarray, "P 2"]) -> Int[np.ndarray, " points"]:
+def near_points(
+    points_in_root: Float[np.ndarray, "P 2"], window: tuple[float, float]
+) -> Int[np.ndarray, " points"]:
     """Return the indices of the points of the local terrain that a surrogate is shown.
+
+    What lies beyond the contacts of the next stretch teaches nothing.
 
     Args:
         points_in_root: of the local terrain [m].
+        window: how far those contacts may lie ahead of the root, and to a side of it [m].
     """
     ahead, beside = points_in_root.T
-    return np.flatnonzero((ahead < _AHEAD) & (np.abs(beside) < _BESIDE))
+    return np.flatnonzero((ahead < window[0]) & (np.abs(beside) < window[1]))
 
 
 def walk_features(

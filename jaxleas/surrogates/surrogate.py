@@ -14,6 +14,7 @@ from pydantic import JsonValue
 from jaxleas.configuration.strict import Strict
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.robots import load_robot
 from jaxleas.surrogates.features import MOTION_FEATURES, near_points
 from jaxleas.surrogates.network import Weights, recur
 
@@ -59,7 +60,8 @@ class Identity(Strict):
     @property
     def near(self) -> Int[np.ndarray, " points"]:
         """Indices of the points that the surrogate is shown among all of the local terrain."""
-        return near_points(_points_in_root(self.robot, self.observation))
+        points = _points_in_root(self.robot, self.observation)
+        return near_points(points, load_robot(self.robot).contact_window)
 
     @property
     def inputs(self) -> int:

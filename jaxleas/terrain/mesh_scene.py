@@ -10,6 +10,7 @@ from jaxleas.terrain.polygons import (
     CONVEXITY_TOLERANCE,
     MIN_AREA,
     PLANARITY_TOLERANCE,
+    STANDING_SLOPE,
     VERTICAL_SLOPE,
     convexity_deviation,
     planarity_deviation,
@@ -20,8 +21,6 @@ from jaxleas.types.errors import InputError
 
 WELD = 1e-5
 """Vertices closer than this are one [m]."""
-STANDING_SLOPE = 0.5
-"""A face whose unit normal's z is at least this may be stood on; steeper ones are obstacles."""
 COPLANAR = 1e-6
 """Neighbours are coplanar if 1 - cosine of the angle between their normals is below this."""
 

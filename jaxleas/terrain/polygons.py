@@ -1,5 +1,7 @@
 """Checks on one convex polygon: is it one, which way does it wind, which plane does it span?"""
 
+import math
+
 import numpy as np
 from jaxtyping import Float
 
@@ -11,6 +13,8 @@ CONVEXITY_TOLERANCE = 1e-3
 """Largest accepted distance by which a vertex may lie on the wrong side of an edge [m]."""
 VERTICAL_SLOPE = 1e-3
 """A polygon whose unit normal's |z| is below this is vertical: it has no height above a point."""
+STANDING_SLOPE = 0.5
+"""What looks up with a unit normal whose z is at least this can be stood on by feet."""
 MAX_VERTICES = 1000
 """Of one polygon: checks compare each vertex with each edge."""
 MIN_AREA = 1e-6
@@ -27,6 +31,14 @@ def is_vertical(vertices: Float[np.ndarray, "V 3"]) -> bool:
     """Return whether the polygon is a wall, without a height above any point of the plane."""
     area = polygon_area_vector(vertices)
     return bool(abs(area[2]) <= VERTICAL_SLOPE * np.linalg.norm(area))
+
+
+def upwardness(vertices: Float[np.ndarray, "V 3"]) -> float:
+    """Return the z of the unit normal: 1 for a floor, 0 for a wall, -1 for a ceiling."""
+    x, y, z = (vertices - vertices.mean(axis=0)).T  # written out: `np.cross` takes its time
+    u, v, w = np.roll(x, -1), np.roll(y, -1), np.roll(z, -1)
+    area = y @ w - z @ v, z @ u - x @ w, x @ v - y @ u
+    return float(area[2] / math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2))
 
 
 def planarity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
@@ -58,6 +70,26 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
     Raises:
         InputError: says which of these it fails, and by how many metres.
     """
+    require_any_orientation(vertices, where)
+    if is_vertical(vertices):
+        if not wall:
+            raise InputError(
+                f"{where} is vertical: nothing can stand on it; list it as an obstacle"
+            )
+    elif polygon_area_vector(vertices)[2] < 0.0:
+        raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
+
+
+def require_any_orientation(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
+    """Refuse what is not a planar, convex polygon; it may face anywhere.
+
+    Args:
+        vertices: corners in order [m].
+        where: names the file and the polygon, for the message.
+
+    Raises:
+        InputError: says which of these it fails, and by how many metres.
+    """
     if len(vertices) < 3:
         raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
     require_few(vertices, where)
@@ -66,17 +98,9 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
     gaps = np.linalg.norm(vertices[:, None, :] - vertices[None, :, :], axis=-1)
     if (gaps[np.triu_indices(len(vertices), 1)] < 1e-6).any():
         raise InputError(f"{where} repeats a vertex; list each corner once")
-    area = polygon_area_vector(vertices)
-    if np.linalg.norm(area) < MIN_AREA:
+    if np.linalg.norm(polygon_area_vector(vertices)) < MIN_AREA:
         raise InputError(f"{where} is degenerate: its area is below {MIN_AREA:g} m^2")
     require_planar_and_convex(vertices, where)
-    if is_vertical(vertices):
-        if not wall:
-            raise InputError(
-                f"{where} is vertical: nothing can stand on it; list it as an obstacle"
-            )
-    elif area[2] < 0.0:
-        raise InputError(f"{where} is clockwise seen from above; reverse its vertices")
 
 
 def require_few(vertices: Float[np.ndarray, "V 3"], where: str) -> None:

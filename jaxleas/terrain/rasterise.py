@@ -23,9 +23,10 @@ BATCH_CELLS, BATCH_POLYGONS = 1_000_000, 200_000
 def rasterise(
     scene: Scene, resolution: float = DEFAULT_RESOLUTION, margin: float = 0.5
 ) -> HeightMap:
-    """Return the height map of a scene: surfaces and obstacles alike, vertical faces skipped.
+    """Return the height map of a scene: of what feet may touch, and of obstacles.
 
-    Cell edges lie at multiples of the resolution.
+    Vertical faces, and surfaces for palms alone, are skipped. Cell edges lie at multiples of the
+    resolution.
 
     Args:
         scene: what to rasterise.
@@ -35,7 +36,8 @@ def rasterise(
     Raises:
         InputError: the resolution is absurd, or the map would be too large.
     """
-    return rasterise_polygons(scene.polygons, resolution, margin, grow=CLOSING)
+    walkable = [*scene.walkable.values(), *scene.obstacles.values()]
+    return rasterise_polygons(walkable, resolution, margin, grow=CLOSING)
 
 
 def rasterise_polygons(

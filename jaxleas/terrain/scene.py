@@ -1,19 +1,31 @@
 """Scenes: convex contact surfaces, obstacles and named areas; what height maps are made from."""
 
+import difflib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from jaxtyping import Float
 
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
-from jaxleas.terrain.polygons import require_convex_polygon
+from jaxleas.terrain.polygons import (
+    STANDING_SLOPE,
+    VERTICAL_SLOPE,
+    is_vertical,
+    require_any_orientation,
+    require_convex_polygon,
+    upwardness,
+)
 from jaxleas.types.errors import InputError
 
 VERSION = 1
 MAX_CORNERS = 10_000_000
-KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas")
+KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas", "touch")
+Touch = Literal["feet", "palms", "both"]
+"""Who may touch a surface."""
 Polygons = dict[str, Float[np.ndarray, "V 3"]]
 
 
@@ -22,17 +34,43 @@ class Scene:
     """A terrain as polygons.
 
     Attributes:
-        surfaces: convex planar polygons that feet may stand on, counter-clockwise seen from
-            above [m].
+        surfaces: convex planar polygons that may be touched, of any orientation: floors, slopes,
+            walls, ceilings; counter-clockwise seen from where they are touched [m].
         obstacles: convex planar polygons that must not be touched: tops as above, side faces
             vertical and wound outwards; box "obstacle_7" has the faces "obstacle_7_top" and
             "obstacle_7_side_0" to "obstacle_7_side_3" [m].
         areas: named polygons for starts and goals, 2 or 3 coordinates a vertex [m].
+        touch: who may touch a surface, by its name; of surfaces that are not named here, those flat
+            enough for feet are for both, all others for palms.
     """
 
     surfaces: Polygons
     obstacles: Polygons = field(default_factory=dict)
     areas: dict[str, Float[np.ndarray, "V 2|3"]] = field(default_factory=dict)
+    touch: Mapping[str, Touch] = field(default_factory=dict)
+
+    def who_touches(self, surface: str) -> Touch:
+        """Return who may touch a surface."""
+        if surface in self.touch:
+            return self.touch[surface]
+        return "both" if upwardness(self.surfaces[surface]) >= STANDING_SLOPE else "palms"
+
+    @cached_property
+    def walkable(self) -> Polygons:
+        """The surfaces that feet may touch."""
+        return self._touched_by("feet")
+
+    @cached_property
+    def pressable(self) -> Polygons:
+        """The surfaces that palms may touch."""
+        return self._touched_by("palms")
+
+    def _touched_by(self, who: Touch) -> Polygons:
+        return {
+            name: vertices
+            for name, vertices in self.surfaces.items()
+            if self.who_touches(name) in (who, "both")
+        }
 
     @property
     def polygons(self) -> list[Float[np.ndarray, "V 3"]]:
@@ -41,7 +79,7 @@ class Scene:
 
 
 def read_scene(path: str | Path) -> Scene:
-    """Read a scene from JSON: `surfaces`, and optionally `obstacles`, `areas` and `version`.
+    """Read a scene from JSON: `surfaces`, optionally `obstacles`, `areas`, `touch` and `version`.
 
     Raises:
         InputError: the file, or one polygon in it (named), cannot be used.
@@ -55,10 +93,13 @@ def read_scene(path: str | Path) -> Scene:
         surfaces=_polygons(path, content, "surfaces", dimensions=(3,)),
         obstacles=_polygons(path, content, "obstacles", dimensions=(3,)),
         areas=_polygons(path, content, "areas", dimensions=(2, 3)),
+        touch=_touch(path, content),
     )
     if not scene.surfaces:
         raise InputError(f"{path} has no surfaces: nothing can stand anywhere")
     require_valid(scene, path)
+    if not scene.walkable:
+        raise InputError(_nowhere(scene, path))
     return scene
 
 
@@ -69,18 +110,56 @@ def write_scene(path: str | Path, scene: Scene) -> None:
         group: {name: np.round(vertices, 6).tolist() for name, vertices in polygons.items()}
         for group, polygons in groups.items()
     }
-    write_json(path, {"version": VERSION, **lists})
+    touch = {"touch": dict(scene.touch)} if scene.touch else {}
+    write_json(path, {"version": VERSION, **lists, **touch})
 
 
 def require_valid(scene: Scene, where: str | Path) -> None:
-    """Refuse a scene with a polygon that is not planar, convex and counter-clockwise."""
+    """Refuse a scene with a polygon that is not planar and convex, or that cannot be touched so."""
     for name, vertices in scene.surfaces.items():
-        require_convex_polygon(vertices, f"{where}: surface '{name}'", wall=False)
+        require_any_orientation(vertices, f"{where}: surface '{name}'")
+        if scene.touch.get(name, "palms") != "palms" and upwardness(vertices) <= VERTICAL_SLOPE:
+            raise InputError(
+                f"{where}: touch says '{scene.touch[name]}' of surface '{name}', which is vertical"
+                " or looks down: feet cannot stand on it; say 'palms'"
+            )
     for name, vertices in scene.obstacles.items():
         require_convex_polygon(vertices, f"{where}: obstacle '{name}'", wall=True)
     for name, vertices in scene.areas.items():
         lifted = np.column_stack([vertices[:, :2], np.zeros(len(vertices))])
         require_convex_polygon(lifted, f"{where}: area '{name}'", wall=False)
+
+
+def _nowhere(scene: Scene, path: str | Path) -> str:
+    """Return why feet can stand nowhere, by the first surface."""
+    name, vertices = next(iter(scene.surfaces.items()))
+    if name in scene.touch:
+        return f"{path} has no surface that feet may touch: touch says 'palms' of all"
+    if is_vertical(vertices):
+        why = "is vertical; list it as an obstacle, and what is stood on as a surface"
+    elif upwardness(vertices) < 0.0:
+        why = "is clockwise seen from above; reverse its vertices, if it is no ceiling"
+    else:
+        why = "is steeper than 60 degrees; say 'feet' of it in 'touch', if it can be stood on"
+    return f"{path} has no surface that feet may touch: surface '{name}' {why}"
+
+
+def _touch(path: str | Path, content: dict[str, Any]) -> dict[str, Touch]:
+    said = content.get("touch", {})
+    if not isinstance(said, dict):
+        raise InputError(f"{path}: 'touch' must be an object of surface: who may touch it")
+    surfaces = content["surfaces"]
+    for name, who in said.items():
+        if name not in surfaces:
+            close = difflib.get_close_matches(name, surfaces, n=1)
+            meant = f"; perhaps you meant '{close[0]}'" if close else ""
+            raise InputError(f"{path}: 'touch' names '{name}', which is no surface{meant}")
+        if who not in get_args(Touch):
+            raise InputError(
+                f"{path}: touch of surface '{name}' is {who!r:.60}; it must be one of"
+                f" {', '.join(get_args(Touch))}"
+            )
+    return said
 
 
 def _polygons(

@@ -53,7 +53,9 @@ class Pose:
             )
         if not (np.isfinite(position).all() and np.isfinite(quaternion).all()):
             raise InputError("the position and quaternion of a pose must be finite numbers")
-        if np.abs(np.linalg.norm(quaternion, axis=-1) - 1.0).max(initial=0.0) > _UNIT:
+        with np.errstate(over="ignore"):  # files of strangers hold numbers of any size
+            length = np.linalg.norm(quaternion, axis=-1)
+        if np.abs(length - 1.0).max(initial=0.0) > _UNIT:
             raise InputError("the quaternion of a pose (w, x, y, z) must have length 1")
         object.__setattr__(self, "position", position)
         object.__setattr__(self, "quaternion", quaternion)

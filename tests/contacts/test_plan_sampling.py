@@ -133,6 +133,9 @@ def test_a_plan_for_another_guide_or_scene_is_refused(climb) -> None:
         certify_postures(climb, straight(3.0, climbing=True), SCENE)
     with pytest.raises(InputError, match="stands on 'bottom', not in this scene"):
         certify_postures(climb, GUIDE, flat())
+    held = replace(SCENE, touch={"bottom": "palms"})
+    with pytest.raises(InputError, match="stands on 'bottom', which feet may not touch"):
+        certify_postures(climb, GUIDE, held)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from jaxleas.terrain import Scene, read_scene, write_scene
+from jaxleas.terrain import Scene, rasterise, read_scene, write_scene
 from jaxleas.types import InputError
 
 
@@ -66,4 +66,78 @@ def test_nan_is_refused(tmp_path):
     path = tmp_path / "scene.json"
     path.write_text('{"surfaces": {"a": [[NaN, 0, 0], [1, 0, 0], [1, 1, 0]]}}')
     with pytest.raises(InputError, match="NaN"):
+        read_scene(path)
+
+
+def slope(degrees: float, size: float = 1.0) -> list[list[float]]:
+    """A square that climbs along x; beyond 90 degrees it hangs over."""
+    run, rise = size * np.cos(np.radians(degrees)), size * np.sin(np.radians(degrees))
+    return [[0.0, 0.0, 0.0], [run, 0.0, rise], [run, size, rise], [0.0, size, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("degrees", "who"),
+    [(0, "both"), (30, "both"), (59, "both"), (61, "palms"), (90, "palms"), (135, "palms"),
+     (180, "palms")],
+)  # fmt: skip
+def test_who_touches_follows_from_the_slope(tmp_path, degrees, who):
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"surfaces": {"floor": square(), "it": slope(degrees)}}))
+    scene = read_scene(path)
+    assert scene.who_touches("it") == who
+    assert list(scene.walkable) == (["floor", "it"] if who == "both" else ["floor"])
+    assert list(scene.pressable) == ["floor", "it"]
+
+
+def test_a_scene_says_who_may_touch_what(tmp_path):
+    surfaces = {"floor": square(), "rail": square(0.9, 0.1), "ramp": slope(65), "wall": slope(90)}
+    touch = {"floor": "feet", "rail": "palms", "ramp": "feet"}
+    path, again = tmp_path / "scene.json", tmp_path / "again.json"
+    path.write_text(json.dumps({"surfaces": surfaces, "touch": touch}))
+    write_scene(again, read_scene(path))
+    for each in (path, again):
+        scene = read_scene(each)
+        assert list(scene.walkable) == ["floor", "ramp"]
+        assert list(scene.pressable) == ["rail", "wall"]
+        assert dict(scene.touch) == touch
+
+
+def test_scenes_from_before_say_nothing_of_touch(tmp_path):
+    write_scene(tmp_path / "scene.json", Scene({"a": np.array(square())}))
+    assert "touch" not in json.loads((tmp_path / "scene.json").read_text())
+
+
+def test_height_maps_are_made_of_what_is_walkable():
+    floor, ceiling = np.array(square(size=2.0)), np.array(square(2.0, 2.0))[::-1]
+    table, box = np.array(square(0.8)), np.array(square(0.5)) + np.array([1.0, 1.0, 0.0])
+    scene = Scene(
+        {"floor": floor, "ceiling": ceiling, "wall": np.array(slope(90)), "table": table},
+        {"box_top": box},
+        touch={"table": "palms"},
+    )
+    heights = rasterise(scene).heights
+    assert set(np.unique(heights[np.isfinite(heights)])) == {0.0, 0.5}
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        ({"touch": []}, "'touch' must be an object"),
+        ({"touch": {"flor": "feet"}}, "'touch' names 'flor', which is no surface; perhaps you"),
+        ({"touch": {"floor": "hands"}}, "'floor' is 'hands'; it must be one of feet, palms, both"),
+        ({"touch": {"floor": ["feet"]}}, "it must be one of feet, palms, both"),
+        ({"touch": {"wall": "both"}}, "'wall', which is vertical or looks down: feet cannot"),
+        ({"touch": {"ceiling": "feet"}}, "'ceiling', which is vertical or looks down"),
+        ({"touch": {"floor": "palms"}}, "no surface that feet may touch: touch says 'palms'"),
+        ({"surfaces": {"wall": slope(90)}}, "surface 'wall' is vertical; list it as an obstacle"),
+        ({"surfaces": {"roof": slope(180)}}, "surface 'roof' is clockwise seen from above"),
+        ({"surfaces": {"steep": slope(70)}}, "'steep' is steeper than 60 degrees; say 'feet'"),
+        ({"surfaces": {"wall": [*slope(90), [0.3, 0.5, 0.2]]}}, "surface 'wall' is not"),
+    ],
+)
+def test_a_scene_that_contradicts_itself_is_refused(tmp_path, content, problem):
+    surfaces = {"floor": square(), "wall": slope(90), "ceiling": slope(180)}
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"surfaces": surfaces, **content}))
+    with pytest.raises(InputError, match=problem):
         read_scene(path)

@@ -145,11 +145,11 @@ def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     reach = max(reach, window) + widest_reference(walker) + MOST_ASIDE
     places = np.asarray(path.position, dtype=np.float64)[:, :2]
     near = {}
-    for name, vertices in scene.surfaces.items():
+    for name, vertices in scene.walkable.items():
         low, high = vertices[:, :2].min(axis=0) - reach, vertices[:, :2].max(axis=0) + reach
         if ((places >= low) & (places <= high)).all(axis=1).any():
             near[name] = vertices
-    return Scene(near or scene.surfaces)
+    return Scene(near or scene.walkable, touch=dict.fromkeys(near or scene.walkable, "feet"))
 
 
 def _reason(problem: ContactProblem, phase: int, plan: ContactPlan) -> str:

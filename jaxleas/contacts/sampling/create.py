@@ -157,7 +157,7 @@ def _try(
         rotation=rotation[rows],
         surface=some.surface[rows],
         corners=support_corners(
-            ground, sole[rows], rotation[rows], some.surface[rows], world.robot.foot_half_size
+            ground, sole[rows], rotation[rows], some.surface[rows], world.sole_half_size
         ),
         moment=mass_moment(world.legs, passed.frames, passed.origins),
     )

@@ -76,7 +76,7 @@ def _reference_stances(
         stances.sole[:, limb], stances.rotation[:, limb] = sole, rotation
         stances.surface[:, limb], stances.since[:, limb] = surface, limb
         stances.corners[:, limb] = support_corners(
-            ground, sole, rotation, surface, world.robot.foot_half_size
+            ground, sole, rotation, surface, world.sole_half_size
         )
     return stances, good
 
@@ -114,7 +114,7 @@ def _stand_otherwise(
     stances = no_stances(len(good))
     stances.sole[:, 0], stances.rotation[:, 0], stances.surface[:, 0] = sole, rotation, surface
     stances.corners[:, 0] = support_corners(
-        world.ground, sole, rotation, surface, world.robot.foot_half_size
+        world.ground, sole, rotation, surface, world.sole_half_size
     )
     # Nobody has to get into the first stance: the right foot "was" where the left one is.
     stances.sole[:, 1], stances.rotation[:, 1] = sole, rotation

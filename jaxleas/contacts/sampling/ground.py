@@ -69,22 +69,25 @@ class Ground:
 
 
 def ground_of(scenes: Sequence[Scene]) -> Ground:
-    """Return the surfaces and obstacles of scenes as arrays.
+    """Return the surfaces and obstacles of scenes as arrays; surfaces for palms alone block legs.
 
     Raises:
         InputError: a scene has no surface to stand on.
     """
-    if not all(scene.surfaces for scene in scenes):
-        raise InputError("this scene has no surfaces: nothing can stand anywhere")
-    surfaces = [each for scene in scenes for each in scene.surfaces.items()]
-    obstacles = [each for scene in scenes for each in scene.obstacles.items()]
-    owner = np.concatenate(
+    if not all(scene.walkable for scene in scenes):
+        raise InputError("this scene has no surfaces for feet: nothing can stand anywhere")
+    surfaces = [[*scene.walkable.items()] for scene in scenes]
+    blocking = [
         [
-            np.repeat(np.arange(len(scenes)), [len(scene.surfaces) for scene in scenes]),
-            np.repeat(np.arange(len(scenes)), [len(scene.obstacles) for scene in scenes]),
+            *((name, each) for name, each in scene.surfaces.items() if name not in scene.walkable),
+            *scene.obstacles.items(),
         ]
-    )
-    return ground_from([*surfaces, *obstacles], len(surfaces), owner)
+        for scene in scenes
+    ]
+    groups = [*surfaces, *blocking]
+    owner = np.repeat(np.tile(np.arange(len(scenes)), 2), [len(group) for group in groups])
+    walkable = sum(len(group) for group in surfaces)
+    return ground_from([each for group in groups for each in group], walkable, owner)
 
 
 def ground_from(

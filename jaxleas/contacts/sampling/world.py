@@ -36,6 +36,11 @@ class World:
     ground: Ground
     settings: SamplingSettings
 
+    @property
+    def sole_half_size(self) -> tuple[float, float]:
+        """Half length and half width of the soles [m]; both feet are alike."""
+        return self.robot.effectors[self.robot.feet[0]].half_size
+
     def robustness(
         self, stances: Stances, com: Float[np.ndarray, "N 3"]
     ) -> Float[np.ndarray, " N"]:

@@ -67,7 +67,7 @@ def refusals(
         scene: whose surfaces carry, and whose polygons all block.
         path: of the root.
     """
-    reached = exact_strict_reachability(robot, scene.surfaces.values(), path.position, path.yaw)
+    reached = exact_strict_reachability(robot, scene.walkable.values(), path.position, path.yaw)
     free = exact_collision(robot, scene.polygons, path.position, path.yaw)
     return ~reached, ~free
 

@@ -12,7 +12,7 @@ from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import InputError
-from tests.contacts.sampling.worlds import flat, hole, stairs, straight, wall
+from tests.contacts.sampling.worlds import flat, floor, hole, stairs, straight, wall
 
 
 @pytest.fixture(scope="module")
@@ -192,6 +192,22 @@ def test_a_bad_guide_path_is_refused(change, sentence):
 def test_a_scene_without_surfaces_is_refused():
     with pytest.raises(InputError, match="no surfaces"):
         plan_contacts(Scene({}), straight(1.0))
+
+
+def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
+    floor_alone, path = flat(), straight(2.0)
+    middle = dict(floor_alone.surfaces)
+    ceiling = floor(-1.0, 9.0, -3.0, 3.0, 2.5)[::-1]
+    railing = floor(-1.0, 9.0, 1.0, 1.1, 0.9)
+    touch = {"railing": "palms"}
+    more = Scene({**middle, "ceiling": ceiling, "railing": railing}, touch=touch)
+    plain, furnished = plan_contacts(floor_alone, path), plan_contacts(more, path)
+    assert plain.success
+    assert furnished.success
+    np.testing.assert_allclose(furnished.soles, plain.soles)
+    low = Scene({**middle, "beam": floor(0.8, 1.2, -3.0, 3.0, 0.3)}, touch={"beam": "palms"})
+    blocked = plan_contacts(low, path)
+    assert not blocked.success, "the shins would go through the beam"
 
 
 @pytest.mark.parametrize(

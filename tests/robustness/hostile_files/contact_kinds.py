@@ -8,6 +8,11 @@ import numpy as np
 from tests.robustness.hostile_files import mutations as m
 from tests.robustness.hostile_files.kinds import Kind, kind_of
 
+URDF = """<robot name="toy"><link name="a"/><link name="b"/><link name="c"/>
+  <joint name="hip" type="revolute"><parent link="a"/><child link="b"/>
+    <origin xyz="0 0 0.5" rpy="0.1 0 0"/><axis xyz="0 1 0"/><limit lower="-1" upper="1"/></joint>
+  <joint name="sole" type="fixed"><parent link="b"/><child link="c"/></joint></robot>"""
+
 
 def contact_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
@@ -15,6 +20,7 @@ def contact_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.problem import FootPose
     from jaxleas.contacts.problem_file import read_problem, write_problem
     from jaxleas.robots.files import read_robot
+    from jaxleas.robots.urdf import read_chain
     from jaxleas.viewer.clips import read_plan_clip
 
     surfaces = {"floor": [[0, -1, 0], [4, -1, 0], [4, 1, 0], [0, 1, 0]]}
@@ -51,6 +57,8 @@ def contact_kinds(folder: Path) -> list[Kind]:
     asked = folder / "problem.json"
     data = Path(__file__).resolve().parents[3] / "jaxleas" / "robots" / "data"
 
+    (folder / "toy.urdf").write_text(URDF)
+
     def plan_read(path: Path) -> None:
         read_plan(path)
         read_plan_clip(path, path.with_name("problem.json"))
@@ -60,4 +68,7 @@ def contact_kinds(folder: Path) -> list[Kind]:
         kind_of("contact plan", folder / "plan.json", plan_read, m.mutate_json, asked),
         kind_of("robot", data / "talos.json", read_robot, m.mutate_json),
         kind_of("robot with numeric legs", data / "g1.json", read_robot, m.mutate_json),
+        kind_of(
+            "URDF", folder / "toy.urdf", lambda path: read_chain(path, "a", "c"), m.mutate_text
+        ),
     ]
