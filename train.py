@@ -77,15 +77,18 @@ def _open(
     from jaxleas.configuration.loading import to_yaml
     from jaxleas.runs.folder import RunFolder
     from jaxleas.runs.watching import require_watchers
-    from jaxleas.training.run_config import load_run_config
+    from jaxleas.training.run_config import load_run_config, make_task, pinned
 
     if given.resume:
+        found = RunFolder.open(given.resume, needs_checkpoint=False)
+        config = load_run_config(found.config, allow=given.allow)
+        make_task(config, given.allow)  # before the folder is held: its code may not be allowed
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
-        config = load_run_config(run.config, allow=given.allow)
         return config, _devices(given, config), run
-    config = load_run_config(given.config, overrides, given.allow)
+    config = pinned(load_run_config(given.config, overrides, given.allow))
     require_watchers(config.watch)  # before a folder is made
     devices = _devices(given, config)
+    make_task(config, given.allow).require_worlds()  # likewise
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
     return config, devices, run

@@ -1,6 +1,8 @@
 """The order of the rooms, as docs and house rules state it: each imports only from those above."""
 
 import ast
+import graphlib
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -24,6 +26,11 @@ FORBIDDEN = {"contacts": {"envs", "training", "guide"}, "surrogates": {"labels"}
 SHORT_SIGNATURES = ("types", "guide", "surrogates", "evaluation", "distillation", "viewer")
 MOST_PARAMETERS = 6
 COMMAND_FILES = ("commands", "command")
+# These serve every task.
+GENERAL = (
+    *("types", "xla", "files", "configuration", "workers", "runs", "geometry", "robots", "terrain"),
+    *("conditions", "contacts", "labels", "training", "sweeps", "export"),
+)
 FILES = sorted(path for path in ROOT.rglob("*.py") if path != ROOT / "__init__.py")
 
 
@@ -77,6 +84,50 @@ def test_many_parameters_are_values_with_names(room: str) -> None:
     files = [path for path in FILES if room_of(path) == room]
     assert files
     assert {str(path): long_signatures(path) for path in files if long_signatures(path)} == {}
+
+
+@pytest.mark.parametrize("room", GENERAL)
+def test_a_general_room_does_not_name_steering(room: str) -> None:
+    """They serve every task: what is one task's is in its own room, and the registry names it."""
+    named = [
+        f"{path.relative_to(ROOT)}: {line.strip()}"
+        for path in FILES
+        if room_of(path) == room
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if re.search(r"steering(?! methods?\b)", line, re.IGNORECASE)
+    ]
+    assert not named
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    """Looked at are imports that run when a file is imported."""
+    modules = {module_of(path): path for path in FILES}
+    graph = {
+        module: {each for each in imported_at_once(path) if each in modules and each != module}
+        for module, path in modules.items()
+    }
+    graphlib.TopologicalSorter(graph).prepare()  # raises where there is a circle
+
+
+def module_of(path: Path) -> str:
+    parts = ["jaxleas", *path.relative_to(ROOT).with_suffix("").parts]
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported_at_once(path: Path) -> Iterator[str]:
+    """Yield the modules that a file imports outside functions and outside TYPE_CHECKING."""
+    waiting: list[ast.stmt] = list(ast.parse(path.read_text(encoding="utf-8")).body)
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            continue
+        if isinstance(node, ast.If | ast.Try):
+            waiting += node.body
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
 @pytest.mark.parametrize(

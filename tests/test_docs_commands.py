@@ -18,7 +18,7 @@ import re
 import shlex
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -33,6 +33,7 @@ from jaxleas.contacts import problem_from_guide
 from jaxleas.contacts.problem_file import write_problem
 from jaxleas.files import write_json
 from jaxleas.guide.files import write_guide_paths
+from jaxleas.robots import load_talos, write_robot
 from jaxleas.terrain import Scene, write_height_map
 from jaxleas.terrain.scene import write_scene
 from jaxleas.training.policy import read_policy, write_policy
@@ -144,6 +145,7 @@ def _fill_here() -> None:
     for name in ("terrain", "map"):
         write_height_map(f"{name}.npz", flat_map(half_size=6.0))
     write_json("queries.json", [QUERY])
+    write_robot("robots/walker.json", replace(load_talos(), name="walker"), about="a test")
     for name in ("leas_p1", "another", "leas_p2_sampling", "p2_mip"):
         run = make_run(Path("runs") / name, seed=len(name))
         write_policy(run / "policy.npz", homing_policy())

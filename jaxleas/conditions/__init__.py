@@ -1,7 +1,18 @@
 """What a valid configuration is: reachability, collision, and how conditions combine."""
 
-from jaxleas.conditions.collision import collision
-from jaxleas.conditions.condition import MARGIN_LIMIT, VOID_IN_ROOT, Condition, all_of
+from jaxleas.conditions.collision import Collision, collision
+from jaxleas.conditions.condition import (
+    MARGIN_LIMIT,
+    VOID_IN_ROOT,
+    AllOf,
+    Condition,
+    Judge,
+    OnPoints,
+    all_of,
+    read_from,
+    stated_points,
+    with_points,
+)
 from jaxleas.conditions.exact import (
     exact_collision,
     exact_reachability,
@@ -10,24 +21,41 @@ from jaxleas.conditions.exact import (
 )
 from jaxleas.conditions.footprint import footprint_points, is_under_root
 from jaxleas.conditions.foresight import Foresight, LookAround, Pick, everyone
-from jaxleas.conditions.reachability import reachability, strict_reachability
+from jaxleas.conditions.points import extended, union_of_points
+from jaxleas.conditions.reachability import (
+    Reachability,
+    StrictReachability,
+    reachability,
+    strict_reachability,
+)
 
 __all__ = [
     "MARGIN_LIMIT",
     "VOID_IN_ROOT",
+    "AllOf",
+    "Collision",
     "Condition",
     "Foresight",
+    "Judge",
     "LookAround",
+    "OnPoints",
     "Pick",
+    "Reachability",
+    "StrictReachability",
     "all_of",
     "collision",
     "everyone",
     "exact_collision",
     "exact_reachability",
     "exact_strict_reachability",
+    "extended",
     "footprint_points",
     "is_under_root",
     "reachability",
+    "read_from",
     "reconfirm",
+    "stated_points",
     "strict_reachability",
+    "union_of_points",
+    "with_points",
 ]

@@ -1,11 +1,15 @@
-"""What a condition is: local heights and a root motion in, a signed margin out."""
+"""What a condition is: the points it reads, and their heights and a root motion to a margin."""
 
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 from jaxtyping import Float
 
+from jaxleas.conditions.points import Points, columns_of, union_of_points
 from jaxleas.types import InputError, RootMotion
 from jaxleas.types.ground import NO_GROUND_IN_ROOT
 
@@ -15,9 +19,18 @@ VOID_IN_ROOT = NO_GROUND_IN_ROOT
 MARGIN_LIMIT = 1.0
 """Margins are clipped to +- this [m]: always finite, even over the void."""
 
+Judge = Callable[[Array, RootMotion], Array]
+"""Heights [*batch, P] and a root motion to a margin [*batch]; says nothing of its points. Such a
+callable is a condition of the older kind: it reads the heights at all points there are."""
+
 
 class Condition(Protocol):
-    """Anything that judges a configuration: an analytic condition or a learned surrogate."""
+    """Anything that judges a configuration: an analytic condition or one of the user's own."""
+
+    @property
+    def points_in_root(self) -> Points:
+        """The points whose heights the condition reads, in this order [m]."""
+        ...
 
     def __call__(
         self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
@@ -25,9 +38,9 @@ class Condition(Protocol):
         """Return the signed margin, positive where the condition is satisfied.
 
         Args:
-            heights_in_root: height of the terrain under each grid point minus the root's z [m];
+            heights_in_root: height of the terrain under each point minus the root's z [m];
                 `VOID_IN_ROOT` or less where there is no ground.
-            motion: of the root; the analytic conditions pass over it.
+            motion: root motion; the analytic conditions pass over it.
 
         Returns:
             Margin [m], clipped to +- `MARGIN_LIMIT`.
@@ -35,21 +48,135 @@ class Condition(Protocol):
         ...
 
 
-def all_of(*conditions: Condition) -> Condition:
+@dataclass(frozen=True, eq=False)
+class OnPoints:
+    """A callable as a condition: it reads the heights at the points stated with it.
+
+    Attributes:
+        points_in_root: points in the root frame [m].
+        judge: callable that takes their heights.
+    """
+
+    points_in_root: Points
+    judge: Judge
+
+    def __call__(
+        self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
+    ) -> Float[Array, "*batch"]:
+        """Return the margin of the callable."""
+        return self.judge(heights_in_root, motion)
+
+
+def stated_points(condition: Condition | Judge) -> Points | None:
+    """Return the points that a condition states, or None for a plain callable."""
+    points = getattr(condition, "points_in_root", None)
+    return None if points is None else np.asarray(points, dtype=np.float64)
+
+
+def with_points(condition: Condition | Judge, points: Points) -> Condition:
+    """Return a condition as it is; a plain callable as one that reads the heights at `points`."""
+    if stated_points(condition) is None:
+        return OnPoints(points, condition)
+    return condition  # type: ignore[return-value]
+
+
+def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
     """Return the condition that holds where all of `conditions` do: the least of their margins.
 
+    It reads the union of their points. A plain callable states no points: it is given all the
+    heights that the others read, who must then read the same ones.
+
+    Args:
+        conditions: at least one condition.
+        order: points in the root frame in whose order the union is listed as far as it lies among
+            them [m]; by default the order of the conditions.
+
+    Returns:
+        A `Condition`, or a plain callable where every condition is one.
+
     Raises:
-        InputError: no condition is given.
+        InputError: no condition is given, or plain callables are mixed with conditions of various
+            points.
     """
     if not conditions:
         raise InputError("all_of needs at least one condition")
+    stated = [each for each in map(stated_points, conditions) if each is not None]
+    if not stated:
+        return _least(conditions)
+    points = union_of_points(stated, order)
+    if len(stated) < len(conditions):
+        if not all(np.array_equal(each, stated[0]) for each in stated):
+            raise InputError(
+                "all_of is given a plain callable and conditions that read different points: give"
+                " the callable points of its own, OnPoints(points_in_root, callable)"
+            )
+        points = stated[0]
+    return AllOf(points, tuple(conditions))
 
+
+class AllOf:
+    """The least margin of several conditions, each of which reads its own of the points."""
+
+    def __init__(self, points_in_root: Points, conditions: Sequence[Condition | Judge]) -> None:
+        """Combine conditions.
+
+        Args:
+            points_in_root: points that are read, those of each condition among them [m].
+            conditions: conditions; a plain callable reads all of the points.
+        """
+        self.points_in_root = points_in_root
+        self.conditions = tuple(conditions)
+        self._judge = _least(
+            [
+                each if stated_points(each) is None else read_from(points_in_root, each)  # type: ignore[arg-type]
+                for each in conditions
+            ]
+        )
+
+    def __call__(
+        self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
+    ) -> Float[Array, "*batch"]:
+        """Return the least of the margins."""
+        return self._judge(heights_in_root, motion)
+
+    def read_from(self, points: Points) -> "Condition":
+        """Return the same condition for the heights at more points."""
+        own = [
+            OnPoints(self.points_in_root, each) if stated_points(each) is None else each  # type: ignore[arg-type]
+            for each in self.conditions
+        ]
+        return AllOf(points, own)
+
+
+def _least(judges: Sequence[Judge]) -> Judge:
     def judge(
         heights_in_root: Float[Array, "*batch P"], motion: RootMotion
     ) -> Float[Array, "*batch"]:
-        margin = conditions[0](heights_in_root, motion)
-        for condition in conditions[1:]:
-            margin = jnp.minimum(margin, condition(heights_in_root, motion))
+        margin = judges[0](heights_in_root, motion)
+        for each in judges[1:]:
+            margin = jnp.minimum(margin, each(heights_in_root, motion))
         return margin
 
     return judge
+
+
+def read_from(points: Points, condition: Condition) -> Condition:
+    """Return the same condition for the heights at more points, its own among them.
+
+    The analytic conditions change the indices inside (`read_from` of theirs): a gather of their
+    heights would cost 20 times as much on a processor. Any other is given `heights[..., columns]`.
+
+    Args:
+        points: points in the root frame whose heights the result takes [m].
+        condition: condition to be asked.
+
+    Raises:
+        InputError: a point that the condition reads is not among them.
+    """
+    if np.array_equal(points, condition.points_in_root):
+        return condition
+    rewritten = getattr(condition, "read_from", None)
+    if rewritten is not None:
+        return rewritten(points)
+    columns = columns_of(condition.points_in_root, points)
+    return OnPoints(points, lambda heights, motion: condition(heights[..., columns], motion))

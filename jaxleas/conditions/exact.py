@@ -36,7 +36,7 @@ def exact_reachability(
         position: of the root in the world [m].
         yaw: heading of the root [rad].
     """
-    reaches = [limb.range_of_motion for limb in robot.limbs]
+    reaches = [limb.range_of_motion for limb in robot.legs]
     return _meets_any(reaches, polygons, position, yaw)
 
 
@@ -55,7 +55,7 @@ def exact_strict_reachability(
         yaw: heading of the root [rad].
     """
     sides = np.array([[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0]])
-    reaches = [limb.range_of_motion.cut(sides, np.full(4, UNDER_ROOT)) for limb in robot.limbs]
+    reaches = [limb.range_of_motion.cut(sides, np.full(4, UNDER_ROOT)) for limb in robot.legs]
     return _meets_any(reaches, polygons, position, yaw)
 
 

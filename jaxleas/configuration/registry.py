@@ -15,7 +15,7 @@ Item = TypeVar("Item")
 class Registry(Generic[Item]):
     """The one place where a kind of plug is named: its tasks, planners, conditions, ...
 
-        TASKS = Registry("task", {"steering": "jaxleas.envs.steering.task:Steering"})
+        SHAPES = Registry("shape", {"box": "jaxleas.geometry:Box"})
 
     A built-in item is imported when it is asked for, so that a list of names costs nothing and an
     item may live in any room.

@@ -46,7 +46,7 @@ def judge_round(
     """
     if file.is_file():
         return read_judged(file)
-    env = SteeringEnv(policy.config)
+    env = SteeringEnv(policy.config.under_standard_conditions())
     cells: list[CellResult] = []
     for name in config.suites:
         suite = make_suite(name, config.starts, held_out=True)

@@ -1,11 +1,13 @@
 """A round's practice: the policy goes on learning while the surrogate ends its episodes."""
 
+import logging
 import time
 from pathlib import Path
 
 import jax
 
 from jaxleas.conditions import Foresight
+from jaxleas.conditions.named import harmless
 from jaxleas.configuration.loading import to_yaml
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
@@ -20,6 +22,8 @@ from jaxleas.training.networks import make_networks
 from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of, write_policy
 from jaxleas.training.train_state import Learned
+
+_LOG = logging.getLogger("jaxleas")
 
 
 def practice_config(
@@ -99,11 +103,18 @@ def conclude(folder: RoundFolder, config: SteeringRun, seconds: float) -> None:
 def read_run(path: str | Path) -> tuple[SteeringRun, Learned]:
     """Return the configuration of a run and what it has learned by its newest checkpoint.
 
+    Conditions that are code, or a surrogate's file, give way to R* and C, with a warning: a
+    distillation has a surrogate of its own.
+
     Raises:
         InputError: it is no run folder, or has no checkpoint that can be read.
     """
     run = RunFolder.open(path)
     config = load_steering_run(run.config)
+    if not harmless(config.env.conditions):
+        _LOG.warning("%s: conditions other than the built-in ones give way to R* and C", path)
+        env = config.env.under_standard_conditions()
+        config = config.model_copy(update={"env": env})
     like = jax.eval_shape(lambda: _fresh(config))
     _, learned, _ = Checkpoints(run.checkpoints).latest(like, partial=True)
     return config, learned

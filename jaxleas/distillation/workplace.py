@@ -81,11 +81,14 @@ class Workplace:
 
     @cached_property
     def ground(self) -> Ground:
-        """The training terrain, made when first needed."""
+        """The generated training terrain, made when first needed.
+
+        Terrain files are left out: planners want surfaces, and files never judge.
+        """
         terrain = self.run_config.terrain
         seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
         scenes = tuple(generate_arena(terrain.generator, seed).scene for seed in seeds)
-        task = Steering(self.run_config.env, terrain)
+        task = Steering(self.run_config.env, terrain.without_files())
         return Ground(self.env, training_world(self.run_config, task), scenes)
 
     @property

@@ -42,6 +42,17 @@ class TaskConfig(Strict, ABC):
     task: str
     """Name of the task, or MODULE:CLASS of one's own."""
 
+    def pinned(self) -> Self:
+        """Return the same task, each file that it names by its absolute path and its digest.
+
+        A run folder keeps it in this form: a resumed run finds the files from any folder, and
+        notices when one has changed.
+
+        Raises:
+            InputError: a file is missing.
+        """
+        return self
+
     @abstractmethod
     def signature(self) -> Signature:
         """Return what a policy is shown and what it answers; the same at every call."""
@@ -66,6 +77,10 @@ class WorldsConfig(Strict):
     """Number of random arenas."""
     first_seed: Annotated[int, Field(ge=0, le=MAX_TRAINING_SEED)] = 0
     """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
+
+    def pinned(self) -> Self:
+        """Return the same worlds, each file that they name by its absolute path and its digest."""
+        return self
 
 
 @struct.dataclass
@@ -164,6 +179,15 @@ class Task(ABC):
         """
         del allow
         return cls(config, worlds)
+
+    def require_worlds(self) -> None:  # noqa: B027 (most tasks have nothing to refuse)
+        """Refuse worlds that cannot be made, as far as that can be seen quickly.
+
+        Asked before a run folder is made.
+
+        Raises:
+            InputError: one sentence with file and key.
+        """
 
     @abstractmethod
     def make_world(self, seeds: Sequence[int], examined: bool) -> Any:

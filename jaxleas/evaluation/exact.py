@@ -198,7 +198,7 @@ def exact_success(
         suites: suites to be walked.
     """
     found = load_policy(policy)
-    env = SteeringEnv(found.config)
+    env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
     with Judge(planner, settings, robot=found.config.robot) as judge:
         shares = [

@@ -35,7 +35,10 @@ class Refusal:
             InputError: the surrogate is of another robot or observation.
         """
         require_fit(self.surrogate, config, where=self.where)
-        return SteeringEnv(config, foresight=SurrogateForesight(self.surrogate, self.threshold))
+        return SteeringEnv(
+            config.under_standard_conditions(),
+            foresight=SurrogateForesight(self.surrogate, self.threshold),
+        )
 
     def describe(self) -> dict[str, Any]:
         """Return what an evaluation file says of it."""
@@ -80,5 +83,7 @@ def load_refusal(
 
 
 def env_of(config: SteeringConfig, refusal: Refusal | None) -> SteeringEnv:
-    """Return the environment to judge in, with a refusal or without."""
-    return SteeringEnv(config) if refusal is None else refusal.env(config)
+    """Return the environment to judge in, by R* and C, with a refusal or without."""
+    if refusal is None:
+        return SteeringEnv(config.under_standard_conditions())
+    return refusal.env(config)

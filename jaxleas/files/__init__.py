@@ -8,6 +8,7 @@ from jaxleas.files.atomic import (
     write_npz,
     write_text,
 )
+from jaxleas.files.digest import digest_of, require_digest
 from jaxleas.files.json_text import parse_json
 from jaxleas.files.keys import refuse_misspelt_keys
 from jaxleas.files.lock import FolderLock, InUseError
@@ -26,6 +27,7 @@ __all__ = [
     "FolderLock",
     "InUseError",
     "atomic_path",
+    "digest_of",
     "is_file",
     "is_held",
     "parse_json",
@@ -34,6 +36,7 @@ __all__ = [
     "read_npz",
     "read_typed",
     "refuse_misspelt_keys",
+    "require_digest",
     "require_version",
     "require_version_array",
     "sweep_temporaries",

@@ -39,6 +39,7 @@ def rollout(
     z_min: float | None = None,
     z_max: float | None = None,
     zero_is_void: bool = False,
+    allow: Sequence[str] | None = None,
 ) -> None:
     """Walk a policy on any terrain and write its guide paths.
 
@@ -57,6 +58,8 @@ def rollout(
         z_min: of a .png, the height of black [m].
         z_max: of a .png, the height of white [m].
         zero_is_void: of a .png, whether black means no ground.
+        allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
+            condition; by default R* and C.
     """
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
@@ -69,7 +72,7 @@ def rollout(
     _require_sizes(steps, len(asked), out)
     if picture is not None:
         require_picture(picture)
-    walker = load_policy(policy)
+    walker = load_policy(policy, allow or ())
     ground = import_terrain(
         terrain,
         resolution=resolution,
@@ -80,7 +83,7 @@ def rollout(
         zero_is_void=zero_is_void,
     )
     require_on_terrain(queries, asked, ground)
-    env = SteeringEnv(walker.config)
+    env = SteeringEnv(walker.config, allow=allow or ())
     config = env.config
     method = steering_named(steering, env, walker)
     walked = walk_queries(env, method, ground, asked, steps)

@@ -1,24 +1,46 @@
 """Find the steering policy a person means: a run folder, a policy.npz, or an ONNX file."""
 
+import logging
+from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 
+from jaxleas.conditions.named import STANDARD, harmless
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
 from jaxleas.runs.folder import policy_file
 from jaxleas.training.policy import Policy, read_policy
 from jaxleas.types import InputError
 
+_LOG = logging.getLogger("jaxleas")
 
-def load_policy(path: str | Path) -> Policy | OnnxPolicy:
-    """Return the policy at `path`; its `config` says what environment it was trained in.
+
+def load_policy(path: str | Path, allow: Collection[str] = ()) -> Policy | OnnxPolicy:
+    """Return the policy at `path`; its `config` says what environment to walk it in.
+
+    That is the one it was trained in, with one exception: conditions that are code, or a
+    surrogate's file, are followed only where a person allows it. A policy file may be a stranger's.
+    Without them the policy walks under R* and C, and a warning says so.
 
     Args:
         path: a run folder (its best policy, `RUN/policy.npz`), a `policy.npz`, or an `.onnx`.
+        allow: each MODULE:CLASS of its conditions that a person has named.
 
     Raises:
         InputError: there is none, or it cannot be used.
     """
-    path = Path(path)
+    policy = _read(Path(path))
+    conditions = policy.config.conditions
+    if harmless(conditions, allow):
+        return policy
+    names = [each if isinstance(each, str) else each.surrogate for each in conditions]
+    _LOG.warning(
+        "%s was trained under the conditions %s; it walks under %s", path, names, list(STANDARD)
+    )
+    return replace(policy, config=policy.config.under_standard_conditions())
+
+
+def _read(path: Path) -> Policy | OnnxPolicy:
     if path.is_dir():
         return read_policy(policy_file(path), of=SteeringConfig)
     if path.suffix == ".npz":

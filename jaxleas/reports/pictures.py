@@ -212,7 +212,7 @@ def draw_profile(
 def reach_below_root(robot: Robot) -> tuple[float, float]:
     """Return the lowest and highest effector position straight below the root [m], any limb's."""
     under = np.array([[0.0, side * 0.05] for side in (-1, 0, 1)])
-    intervals = [limb.range_of_motion.z_interval(under) for limb in robot.limbs]
+    intervals = [limb.range_of_motion.z_interval(under) for limb in robot.legs]
     low = min(float(np.nanmin(each[0])) for each in intervals)
     high = max(float(np.nanmax(each[1])) for each in intervals)
     return low, high

@@ -41,7 +41,7 @@ class Limb:
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A legged robot as the steering method and the contact planners see it.
+    """A legged robot as steering methods and contact planners see it.
 
     Attributes:
         name: name by which `load_robot` finds it.
@@ -119,6 +119,11 @@ class Robot:
     def foot_names(self) -> tuple[str, ...]:
         """Names of the effectors that carry a walking robot, in the order of the limbs."""
         return tuple(self.effectors[index].name for index in self.feet)
+
+    @property
+    def legs(self) -> "tuple[Limb, ...]":
+        """The limbs that carry a walking robot."""
+        return tuple(self.limbs[index] for index in self.feet)
 
     def effector_index(self, name: str) -> int:
         """Return the index of an effector.

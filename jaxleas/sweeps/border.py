@@ -15,7 +15,7 @@ from jaxleas.evaluation.suites import SUITED_TASKS, make_suite
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
 from jaxleas.training.config import RunConfig
 from jaxleas.training.ppo_params import swept_fields
-from jaxleas.training.run_config import load_run_config
+from jaxleas.training.run_config import load_run_config, pinned
 from jaxleas.types.errors import InputError
 
 # What measures must not be searched, or every trial is asked another question.
@@ -72,7 +72,7 @@ def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
     """
     path = Path(path)
     config = load_config(SweepConfig, path)
-    base = load_run_config(path.parent / config.config, allow=allow)
+    base = pinned(load_run_config(path.parent / config.config, allow=allow))
     for name in config.set:
         require_field(type(base), name, f"{path}: set")
     base = with_values(base, config.set, f"{path}: set")

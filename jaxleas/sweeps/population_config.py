@@ -18,7 +18,7 @@ from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
 from jaxleas.training.config import RunConfig
 from jaxleas.training.ppo_params import swept_fields
-from jaxleas.training.run_config import load_run_config
+from jaxleas.training.run_config import load_run_config, pinned
 from jaxleas.types.errors import InputError
 
 
@@ -88,7 +88,7 @@ def open_population(path: str | Path, allow: Collection[str] = ()) -> Members:
     """
     path = Path(path)
     config = load_config(PopulationConfig, path)
-    base = load_run_config(path.parent / config.config, allow=allow)
+    base = pinned(load_run_config(path.parent / config.config, allow=allow))
     _require_vectorised(base, path, allow)
     for name in config.set:
         require_field(type(base), name, f"{path}: set")

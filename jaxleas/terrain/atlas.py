@@ -15,9 +15,6 @@ from jaxleas.xla.angles import sine_cosine
 from jaxleas.xla.compute_once import compute_once
 from jaxleas.xla.huge_pages import hold_in_huge_pages
 
-VOID = NO_GROUND
-"""The same under the name by which the starts of the steering task know it."""
-
 _ROUND = 12582912.0  # 1.5 * 2^23: added to a float32, it leaves a whole number in the last bits
 _ROUND_BITS = 0x4B400000  # its own bits
 

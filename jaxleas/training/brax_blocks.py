@@ -1,9 +1,10 @@
 """The parts of Brax that PPO is built from, imported without Brax's physics.
 
-`import brax` pulls in mujoco (a second of start-up and two warnings) for its simulators, which a
-steering run never touches. `brax.training` itself needs none of that. So the package `brax` is
-registered first as an empty shell with the right path: its training parts load through it, and
-the first touch of anything else (`brax.State`, say) runs the real package's own initialisation.
+`import brax` pulls in mujoco (a second of start-up and two warnings) for its simulators, which
+training without physics never touches. `brax.training` itself needs none of that. So the package
+`brax` is registered first as an empty shell with the right path: its training parts load through
+it, and the first touch of anything else (`brax.State`, say) runs the real package's own
+initialisation.
 """
 
 import importlib.util

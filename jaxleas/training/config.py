@@ -140,7 +140,7 @@ Worlds = TypeVar("Worlds", bound=WorldsConfig)
 
 
 class RunConfig(Strict, Generic[Env, Worlds]):
-    """One experiment; `RunConfig[SteeringConfig, TerrainConfig]`, say, is one of a task."""
+    """One experiment; `RunConfig[task.Config, task.Worlds]` is one of a task."""
 
     seed: Seed = 0
     """Of everything random in training except the terrain."""

@@ -66,6 +66,16 @@ def make_task(config: AnyRun, allow: Collection[str] = ()) -> Task:
     return TASKS.find(config.env.task, allow).make(config.env, config.terrain, allow)
 
 
+def pinned(config: AnyRun) -> AnyRun:
+    """Return the configuration with each file by its absolute path and its digest.
+
+    Raises:
+        InputError: a file is missing.
+    """
+    sections = {"terrain": config.terrain.pinned(), "env": config.env.pinned()}
+    return config.model_copy(update=sections)
+
+
 def _model(strongest_first: Layers, allow: Collection[str]) -> type[AnyRun]:
     for source, stated in strongest_first:
         section = stated.get("env")

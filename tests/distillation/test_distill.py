@@ -1,10 +1,14 @@
 """A distillation, very small: it goes through all stages, and goes on where it was stopped."""
 
+import shutil
+
 import jax
 import numpy as np
 import pytest
+import yaml
 
 from jaxleas import cli
+from jaxleas.conditions.named import STANDARD
 from jaxleas.configuration.loading import load_config, to_yaml
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
@@ -15,6 +19,7 @@ from jaxleas.envs.steering import Steering
 from jaxleas.files import read_json
 from jaxleas.runs.folder import RunFolder
 from jaxleas.surrogates import read_surrogate
+from jaxleas.terrain import write_height_map
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.loop import train
 from jaxleas.training.networks.mlp import layers_of
@@ -22,6 +27,7 @@ from jaxleas.training.policy import read_policy
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
 
+from ..guide.walkers import flat_map
 from ..training.runs import ROOT, tiny
 
 SHIPPED = sorted((ROOT / "configs").glob("leas_p2_*.yaml"))
@@ -236,3 +242,23 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
             ["distill", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "o"), "--start", "no"]
         )
     assert not (tmp_path / "o").exists()
+
+
+def test_a_run_on_files_and_under_own_code_is_distilled_on_arenas_under_the_standard_conditions(
+    start, tmp_path, caplog
+):
+    run = tmp_path / "run"
+    shutil.copytree(start, run)
+    write_height_map(tmp_path / "yard.npz", flat_map(resolution=0.04))
+    stated = yaml.safe_load((run / "config.yaml").read_text())
+    stated["terrain"] |= {"files": [str(tmp_path / "yard.npz")], "files_share": 0.5}
+    stated["env"]["conditions"] = ["collision", "nowhere:Own"]
+    (run / "config.yaml").write_text(yaml.safe_dump(stated))
+    with caplog.at_level("WARNING"):
+        place = Workplace(DistillationConfig(), DistillationFolder(tmp_path), str(run), 1)
+    assert "give way to R* and C" in caplog.text
+    assert place.env.config.conditions == STANDARD
+    # Planners are asked about surfaces, which files do not have; practice walks on files, too.
+    assert place.ground.world.own is None
+    assert len(place.ground.scenes) == len(place.ground.world.atlas) == 6
+    assert practice_config(place.config, place.run_config).terrain.files_share == 0.5

@@ -6,6 +6,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.conditions.named import STANDARD, NamedConditions
+from jaxleas.conditions.named import pinned as pinned_conditions
 from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive
 from jaxleas.configuration.strict import Strict
 from jaxleas.envs.environment import TaskConfig, WorldsConfig
@@ -15,6 +17,8 @@ from jaxleas.envs.signature import Part, Signature
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN, layout_named
 from jaxleas.envs.steering.scaling import affine_scaling
 from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.own_files import Entry as TerrainEntry
+from jaxleas.terrain.own_files import pinned as pinned_files
 
 
 class MotionLimits(Strict):
@@ -81,6 +85,30 @@ class TerrainConfig(WorldsConfig):
     """Side of a height map's cell [m]."""
     shares: LinkShares = LinkShares()
     generator: GeneratorConfig = GeneratorConfig()
+    files: tuple[TerrainEntry, ...] = ()
+    """Terrain files of one's own to train on beside the generator's arenas: paths, or
+    `{file: PATH, up: y, scale: 0.001}` with what a file does not say of itself. They train, they
+    never judge."""
+    files_share: Fraction = 0.0
+    """Share of the starts that fall on these files, each as often as any other."""
+
+    @model_validator(mode="after")
+    def _files_have_a_share(self) -> Self:
+        if self.files and not self.files_share:
+            raise ValueError("files are given, but files_share is 0: give a share, such as 0.5")
+        if self.files_share and not self.files:
+            raise ValueError(
+                f"files_share is {self.files_share:g}, but no files are given: give files, too"
+            )
+        return self
+
+    def pinned(self) -> Self:
+        """Return the same terrain, each file by its absolute path and with its digest."""
+        return self.model_copy(update={"files": pinned_files(self.files)})
+
+    def without_files(self) -> Self:
+        """Return the arenas alone, which have surfaces."""
+        return self.model_copy(update={"files": (), "files_share": 0.0})
 
 
 class SteeringConfig(TaskConfig):
@@ -114,6 +142,10 @@ class SteeringConfig(TaskConfig):
     """Share of episodes that begin with a random goal, as all do once their link is crossed."""
     goal_steps: tuple[Count, Count] = (200, 800)
     """A goal lasts a random number of steps in this range, or until it is reached."""
+    conditions: NamedConditions = STANDARD
+    """What ends an episode where it fails: `reachability` (R), `strict_reachability` (R*),
+    `collision` (C), one `{surrogate: FILE}`, and MODULE:CLASS of one's own, which --allow must
+    repeat on the command line."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
 
@@ -146,6 +178,14 @@ class SteeringConfig(TaskConfig):
         from jaxleas.envs.steering.description import describe_steering
 
         return describe_steering(self)
+
+    def pinned(self) -> Self:
+        """Return the same task, each file that it names by its absolute path and its digest."""
+        return self.model_copy(update={"conditions": pinned_conditions(self.conditions)})
+
+    def under_standard_conditions(self) -> Self:
+        """Return the same task under R* and C, by which policies are compared."""
+        return self.model_copy(update={"conditions": STANDARD})
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

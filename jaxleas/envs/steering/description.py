@@ -20,6 +20,7 @@ def describe_steering(config: SteeringConfig) -> dict[str, Any]:
     limits = config.limits
     return {
         "format": FORMAT,
+        "task": config.task,
         "observation": describe_observation(layout, config),
         "command": {
             "order": COMMAND_ORDER,

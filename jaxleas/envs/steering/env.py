@@ -1,5 +1,6 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
+from collections.abc import Collection
 from typing import Any
 
 import jax.numpy as jnp
@@ -10,14 +11,14 @@ from jaxtyping import Float, Int
 from jaxleas.conditions import (
     Condition,
     Foresight,
+    Judge,
     Pick,
-    all_of,
-    collision,
+    extended,
     footprint_points,
-    strict_reachability,
+    read_from,
+    with_points,
 )
-from jaxleas.conditions.collision import trunk_bottoms
-from jaxleas.conditions.footprint import is_under_root
+from jaxleas.conditions.catalogue import make_judges
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
@@ -42,7 +43,7 @@ class SteeringEnv:
 
     The local terrain of a robot is the heights at `points_in_root`: first the observation's grid,
     then the footprint, a finer grid in the trunk's shadow that the conditions need and the policy
-    does not see.
+    does not see, and at last whatever else a condition of one's own reads.
 
     Attributes:
         config: of the task.
@@ -59,38 +60,39 @@ class SteeringEnv:
     def __init__(
         self,
         config: SteeringConfig,
-        condition: Condition | None = None,
+        condition: Condition | Judge | None = None,
         foresight: Foresight | None = None,
+        allow: Collection[str] = (),
     ):
         """Prepare the task.
 
         Args:
             config: of the task.
-            condition: that ends an episode; by default strict reachability and collision of the
-                robot (R* and C, T 3.3.1).
-            foresight: that ends an episode as well, out of what it remembers of it.
+            condition: that ends an episode, in place of all that the configuration names; a plain
+                callable reads the heights at the grid and the footprint.
+            foresight: that ends an episode as well, out of what it remembers of it, in place of
+                one that the configuration names.
+            allow: each MODULE:CLASS of `config.conditions` that a person has named.
+
+        Raises:
+            InputError: a condition that the configuration names cannot be had.
         """
         self.config = config
         self.layout = layout_named(config.observation)
         self.robot = load_robot(config.robot)
         self.height_range = (config.height_low, config.height_high)
-        self.points_in_root = np.concatenate(
-            [self.layout.points_in_root, footprint_points(self.robot)]
-        )
         # What is looked at: places kept for the motion in the observation, then its grid.
         self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
-        self.condition = condition or self._own_condition(self.points_in_root)
-        self.foresight = foresight
-        # What a step is judged by: our own condition asks for few of the points.
-        self._judged, self._judge = self.points_in_root, self.condition
+        sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
         if condition is None:
-            points = self.points_in_root
-            matters = is_under_root(points) | np.isfinite(trunk_bottoms(self.robot, points))
-            self._judged = points[matters]
-            self._judge = self._own_condition(self._judged)
-
-    def _own_condition(self, points: np.ndarray) -> Condition:
-        return all_of(strict_reachability(self.robot, points), collision(self.robot, points))
+            judges = make_judges(config.conditions, self.robot, sampled, config, allow)
+            condition, foresight = judges.condition, foresight or judges.foresight
+        self.foresight = foresight
+        # What a step is judged by: conditions ask for few of the points.
+        self._judge = with_points(condition, sampled)
+        self._judged = np.asarray(self._judge.points_in_root, np.float64)
+        self.points_in_root = extended(sampled, self._judged)
+        self.condition = read_from(self.points_in_root, self._judge)
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion

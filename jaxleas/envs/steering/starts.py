@@ -10,15 +10,12 @@ from jaxtyping import Float, Key
 from jaxleas.envs.environment import Starts
 from jaxleas.envs.starts import pool_of, take
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.own_terrain import OwnStarts, draw_own_starts
 from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
 from jaxleas.envs.steering.world import World
-from jaxleas.terrain.atlas import VOID
 from jaxleas.types import RootMotion
+from jaxleas.types.ground import is_ground
 
-# How far below and above its walking height the root may stand when an episode starts [m]: over
-# level ground all of this is valid. A low root is what stairs down ask for, and a policy that has
-# never been low does not find out; users' starts are not exact either.
-HEIGHT_SPREAD = (-0.20, 0.07)
 FOREVER = 2**30  # steps
 
 
@@ -30,6 +27,9 @@ def draw_starts(
     wander_share: float | None = None,
 ) -> Starts:
     """Draw candidates for starts: a random link, anywhere in its start area, any heading.
+
+    A share of them falls on terrain files instead, if the world has any: anywhere, with goals a
+    walk away.
 
     Every call draws anew, so no start is ever replayed. Candidates that violate the condition, or
     whose goal nobody could stand at (in a box, beside the ground), are kept in the arrays (shapes
@@ -44,25 +44,36 @@ def draw_starts(
     """
     if wander_share is None:
         wander_share = env.config.wander_share
-    link_key, place_key, motion_key, goal_key, wander_key = jax.random.split(key, 5)
+    # The first five keys are the same however many follow.
+    needs_more = env.foresight is not None or world.own is not None
+    keys = jax.random.split(key, 8 if needs_more else 5)
+    link_key, place_key, motion_key, goal_key, wander_key, *further = keys
     link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
     plan = _draw_plan(env, world, link, goal_key)
     motion = _draw_motion(env, world, link, place_key, motion_key)
+    own = None
+    if world.own is not None:
+        own = draw_own_starts(world.own, further[1], count, GOALS)
+        plan, motion = _put_on_files(env, world, own, plan, motion, further[2])
     heights = env.local_heights(world.atlas, plan.map_index, motion)
     valid = env.condition(heights, motion) >= 0.0
     memory: Any = ()
     if env.foresight is not None:
-        # A key beside the five: without foresight the same starts are drawn as ever.
-        chance = jax.random.uniform(jax.random.fold_in(key, 5), (count,))
+        chance = jax.random.uniform(further[0], (count,))
         foreseen, memory = env.foresight.begin(heights, motion, chance)
         valid &= foreseen >= 0.0
     state = env.start(motion, plan, memory)
     wanders = jax.random.bernoulli(wander_key, wander_share, (count,))
+    if own is not None:
+        wanders &= ~own.chosen  # their first goal is random anyway
     state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
     arrival = _arrival(env, world, motion, plan)
     arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
     arrives = env.condition(arrival_heights, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
+    if world.own is not None and own is not None:
+        over_ground = is_ground(world.atlas.height_at(own.map_index, own.start[:, None])[:, 0])
+        valid &= (arrives & over_ground) | ~own.chosen
     return Starts(state, valid, world.kind[link])
 
 
@@ -96,7 +107,9 @@ def _draw_motion(
     # Half of the robots stand; the others walk the way they look (I sec. IV-B).
     speed = jnp.maximum(jax.random.uniform(speed_key, shape, minval=-1.0), 0.0)
     speed = speed * env.config.desired_speed
-    low, high = HEIGHT_SPREAD
+    # A low root is what stairs down ask for, and a policy that has never been low does not find
+    # out; users' starts are not exact either.
+    low, high = env.robot.start_heights
     spread = jax.random.uniform(height_key, (*shape, 1), minval=low, maxval=high)
     return RootMotion(
         position=_stand(env, world, world.map_index[link], horizontal).at[:, 2:].add(spread),
@@ -105,6 +118,21 @@ def _draw_motion(
         ),
         yaw=yaw,
     )
+
+
+def _put_on_files(
+    env: SteeringEnv, world: World, own: OwnStarts, plan: Plan, motion: RootMotion, key: Array
+) -> tuple[Plan, RootMotion]:
+    """Return plans and motions with those on files put in where a candidate starts on one."""
+    low, high = env.robot.start_heights
+    spread = jax.random.uniform(key, (len(own.chosen), 1), minval=low, maxval=high)
+    position = _stand(env, world, own.map_index, own.start).at[:, 2:].add(spread)
+    plan = plan.replace(  # type: ignore[attr-defined]
+        map_index=jnp.where(own.chosen, own.map_index, plan.map_index),
+        goals=jnp.where(own.chosen[:, None, None], own.goals, plan.goals),
+    )
+    position = jnp.where(own.chosen[:, None], position, motion.position)
+    return plan, motion.replace(position=position)  # type: ignore[attr-defined]
 
 
 def _arrival(env: SteeringEnv, world: World, motion: RootMotion, plan: Plan) -> RootMotion:
@@ -124,7 +152,7 @@ def _stand(
     """Return root positions at walking height over the ground."""
     ground = world.atlas.height_at(map_index, horizontal[:, None, :])
     # A root measured from the void would see the void at walking height and pass for valid.
-    ground = jnp.where(ground <= VOID, 0.0, ground)
+    ground = jnp.where(is_ground(ground), ground, 0.0)
     return jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
 
 

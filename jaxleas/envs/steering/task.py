@@ -1,7 +1,7 @@
 """Steering as a task of the house: its worlds, its starts, and the growing cost of a failure."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Self
 
 import jax
 from jax import Array
@@ -11,11 +11,13 @@ from jaxleas.conditions import Condition, Foresight
 from jaxleas.envs.environment import Examination, Starts, Task
 from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering.own_terrain import make_own_terrain
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts
 from jaxleas.envs.steering.state import SteeringResult, SteeringState
-from jaxleas.envs.steering.world import KINDS, World, make_world
+from jaxleas.envs.steering.world import KINDS, OwnMaps, World, make_world
 from jaxleas.terrain.generator import generate_arena
+from jaxleas.terrain.own_files import read_own_terrain
 
 NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
 
@@ -37,6 +39,7 @@ class Steering(Task):
         worlds: TerrainConfig | None = None,
         condition: Condition | None = None,
         foresight: Foresight | None = None,
+        allow: Collection[str] = (),
     ) -> None:
         """Prepare the task.
 
@@ -46,12 +49,34 @@ class Steering(Task):
             condition: condition that ends an episode, in place of the configuration's.
             foresight: condition with memory that ends an episode, too, such as a surrogate of a
                 contact planner.
+            allow: code of the user's own that may be run, each MODULE:CLASS.
         """
         super().__init__(config, worlds or TerrainConfig())
-        self.env = SteeringEnv(config, condition, foresight)
+        self.env = SteeringEnv(config, condition, foresight, allow)
+
+    @classmethod
+    def make(cls, config: Any, worlds: Any, allow: Collection[str] = ()) -> Self:
+        """Return the task under the conditions that its configuration names."""
+        return cls(config, worlds, allow=allow)
+
+    def require_worlds(self) -> None:
+        """Refuse terrain files that cannot be trained on."""
+        files = self._own_maps()
+        if files is not None:
+            make_own_terrain(files.robot, files.maps, files.share, first_map=0)
+
+    def _own_maps(self) -> OwnMaps | None:
+        """Read the terrain files; None: the configuration names none."""
+        terrain = self.worlds
+        if not terrain.files:
+            return None
+        maps = read_own_terrain(terrain.files, terrain.resolution)
+        return OwnMaps(maps, terrain.files_share, self.env.robot)
 
     def make_world(self, seeds: Sequence[int], examined: bool) -> World:
         """Generate arenas, rasterise them, and list their links.
+
+        Terrain files are trained on, too; they never judge.
 
         Those of the examination have no boxes, and crossings only: every goal can be reached, so
         that the score has room to the top and the best policy can be told from the second best.
@@ -66,7 +91,8 @@ class Steering(Task):
             generator = generator.model_copy(update={"obstacles": clear})
             shares |= dict.fromkeys(NOT_CROSSED, 0.0)
         arenas = [generate_arena(generator, seed) for seed in seeds]
-        return make_world(arenas, terrain.resolution, shares)
+        files = None if examined else self._own_maps()
+        return make_world(arenas, terrain.resolution, shares, files)
 
     def draw_starts(
         self, world: World, key: Key[Array, ""], count: int, examined: bool = False

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import jax.numpy as jnp
 import numpy as np
@@ -10,8 +11,11 @@ from jax import Array
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.envs.steering.config import LinkShares
+from jaxleas.envs.steering.own_terrain import OwnTerrain, make_own_terrain
+from jaxleas.robots import Robot
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.generator import Arena
+from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.links import Link
 from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types.errors import InputError
@@ -19,6 +23,7 @@ from jaxleas.types.errors import InputError
 DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
 KINDS = tuple(LinkShares.model_fields)
 """Kinds of links: the groups of an episode's starts."""
+MOST_CELLS = 2**29  # of an atlas, its padding included: two gibibytes
 NEAR = 0.8  # depth of the strip that counts as near to what is to be crossed [m]
 
 
@@ -36,6 +41,7 @@ class World:
         kind: number of each link's kind, an index of `KINDS`.
         crossable: whether the goal can be reached at all; before a dead end it cannot.
         cumulative_share: of the starts that fall on each link and those before it; ends at 1.
+        own: places to start from on terrain files; None: there are no such files.
     """
 
     atlas: Atlas
@@ -47,10 +53,29 @@ class World:
     kind: Int[Array, " links"]
     crossable: Bool[Array, " links"]
     cumulative_share: Float[Array, " links"]
+    own: OwnTerrain | None = None
+
+
+@dataclass(frozen=True)
+class OwnMaps:
+    """Terrain files to train on beside the arenas.
+
+    Attributes:
+        maps: name and height map of each.
+        share: share of the starts that fall on them.
+        robot: robot that must find room to stand there.
+    """
+
+    maps: Sequence[tuple[str, HeightMap]]
+    share: float
+    robot: Robot
 
 
 def make_world(
-    arenas: Sequence[Arena], resolution: float, shares: Mapping[str, float] | None = None
+    arenas: Sequence[Arena],
+    resolution: float,
+    shares: Mapping[str, float] | None = None,
+    files: OwnMaps | None = None,
 ) -> World:
     """Rasterise arenas into one atlas and list their links.
 
@@ -59,9 +84,11 @@ def make_world(
         resolution: of the height maps [m].
         shares: relative share of starts by kind of link, split evenly among the links of a kind;
             without it every link is as likely as any other, and dead ends are left out.
+        files: terrain files that are trained on, too; None: none.
 
     Raises:
-        InputError: no arena has a link, or none of a kind with a share.
+        InputError: no arena has a link, or none of a kind with a share; a file has no room to
+            stand, or all maps together are too large.
     """
     maps = [rasterise(arena.scene, resolution) for arena in arenas]
     links = [
@@ -74,6 +101,13 @@ def make_world(
             "the generated arenas hold no link to cross: give more rows or columns of tiles"
         )
     extents = [each.extent for each in maps]
+    own = None
+    if files is not None:
+        # Near the origin: numbers of 32 bits are coarse where a survey's coordinates lie.
+        near = [(name, replace(each, origin=(0.0, 0.0))) for name, each in files.maps]
+        _require_room(maps, near)
+        own = make_own_terrain(files.robot, near, files.share, first_map=len(maps))
+        maps = [*maps, *(each for _, each in near)]
     return World(
         atlas=make_atlas(maps),
         map_index=jnp.asarray([index for index, _ in links], dtype=jnp.int32),
@@ -84,7 +118,22 @@ def make_world(
         kind=jnp.asarray([KINDS.index(link.kind) for _, link in links], dtype=jnp.int32),
         crossable=jnp.asarray([link.kind not in DEAD_ENDS for _, link in links]),
         cumulative_share=_cumulative([link.kind for _, link in links], shares),
+        own=own,
     )
+
+
+def _require_room(arenas: Sequence[HeightMap], files: Sequence[tuple[str, HeightMap]]) -> None:
+    """Refuse files that would make the atlas, where all maps are padded to one shape, too large."""
+    name, largest = max(files, key=lambda each: each[1].heights.size)
+    maps = [*arenas, *(each for _, each in files)]
+    rows, columns = (max(each.shape[axis] for each in maps) for axis in (0, 1))
+    if (cells := len(maps) * rows * columns) > MOST_CELLS:
+        raise InputError(
+            f"{name} has {largest.shape[0]} x {largest.shape[1]} cells: {len(maps)} maps padded to"
+            f" {rows} x {columns} would take {4 * cells / 2**30:.1f} GiB, more than the"
+            f" {4 * MOST_CELLS / 2**30:g} accepted; give a part of it, larger cells"
+            " (terrain.resolution), or fewer terrain.arenas"
+        )
 
 
 def _near(link: Link) -> tuple[float, ...]:

@@ -1,0 +1,133 @@
+"""The conditions there are, by name, and what a configuration's names stand for."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.conditions.condition import Condition, all_of, stated_points
+from jaxleas.conditions.foresight import Foresight
+from jaxleas.configuration.registry import Registry
+from jaxleas.robots import Robot
+from jaxleas.types import InputError, RootMotion
+
+if TYPE_CHECKING:
+    from jaxleas.conditions.named import Named
+
+SURROGATE = "surrogate"
+KEY = "env.conditions"  # what errors call the place where conditions are named
+
+
+def _require_callable(name: str, item: Any) -> None:
+    if not callable(item):
+        raise InputError(
+            f"{KEY}: {name} is no condition: give a class that is made from a robot and the points"
+            " sampled anyway, and judges their heights (docs/your_own.md)"
+        )
+
+
+CONDITIONS: Registry[Callable[..., Any]] = Registry(
+    "condition",
+    {
+        "reachability": "jaxleas.conditions.reachability:Reachability",
+        "strict_reachability": "jaxleas.conditions.reachability:StrictReachability",
+        "collision": "jaxleas.conditions.collision:Collision",
+        SURROGATE: "jaxleas.surrogates.named:foresight_of",
+    },
+    _require_callable,
+)
+"""Each but the surrogate is called with the robot and the points that are sampled anyway."""
+
+
+@dataclass(frozen=True)
+class Judges:
+    """What ends an episode.
+
+    Attributes:
+        condition: least margin of all conditions.
+        foresight: condition with memory; None: nothing is foreseen.
+    """
+
+    condition: Condition
+    foresight: Foresight | None
+
+
+def make_judges(
+    named: Sequence["Named"],
+    robot: Robot,
+    candidates: Float[np.ndarray, "C 2"],
+    env: Any,
+    allow: Collection[str] = (),
+) -> Judges:
+    """Return what a configuration's conditions stand for.
+
+    Args:
+        named: conditions by name.
+        robot: robot that is judged.
+        candidates: points in the root frame whose heights are sampled anyway [m]; conditions
+            choose from them, or state others.
+        env: configuration of the environment, which a surrogate must fit.
+        allow: each MODULE:CLASS that a person has named; code that only a file names is never run.
+
+    Raises:
+        InputError: one sentence with the key: a name is unknown, code may not be run or makes no
+            condition, a surrogate's file is missing or is for another robot.
+    """
+    made = [_make(each, robot, candidates, env, allow) for each in named]
+    foresights = [each for each in made if _foresees(each)]
+    conditions = [each for each in made if not _foresees(each)]
+    if len(foresights) > 1:
+        raise InputError(f"{KEY}: an episode can follow one condition with memory: leave one out")
+    if not conditions:
+        raise InputError(f"{KEY}: no condition judges a configuration by itself: add collision")
+    return Judges(
+        condition=all_of(*conditions, order=candidates),
+        foresight=foresights[0] if foresights else None,
+    )
+
+
+def _make(
+    each: "Named", robot: Robot, candidates: np.ndarray, env: Any, allow: Collection[str]
+) -> Any:
+    try:
+        if not isinstance(each, str):
+            return CONDITIONS.find(SURROGATE)(each, env)
+        made = CONDITIONS.find(each, allow)(robot, candidates)
+    except InputError as error:
+        raise InputError(f"{KEY}: {error}") from error
+    if not _foresees(made):
+        _require_condition(each, made)
+    return made
+
+
+def _foresees(judge: Any) -> bool:
+    return hasattr(judge, "begin") and hasattr(judge, "follow")
+
+
+def _require_condition(name: str, made: Any) -> None:
+    """Refuse what an own class makes if it cannot judge."""
+    points = stated_points(made)
+    if not callable(made) or points is None:
+        missing = "points_in_root" if callable(made) else "__call__(heights_in_root, motion)"
+        raise InputError(f"{KEY}: {name} makes a condition without {missing}: give it that")
+    shape = np.shape(points)
+    if len(shape) != 2 or shape[1] != 2 or not np.isfinite(points).all():
+        raise InputError(
+            f"{KEY}: {name} states points of shape {shape}; finite points [P, 2] in the root frame"
+            " [m] would do"
+        )
+    robots = 2
+    heights, motion = (
+        jnp.zeros((robots, shape[0])),
+        RootMotion(jnp.zeros((robots, 3)), jnp.zeros((robots, 3)), jnp.zeros(robots)),
+    )
+    margin = jax.eval_shape(made, heights, motion)
+    if getattr(margin, "shape", None) != (robots,):
+        raise InputError(
+            f"{KEY}: {name} answers {robots} robots with {margin}; one margin for each, for any"
+            " batch of robots, would do"
+        )

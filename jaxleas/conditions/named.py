@@ -1,0 +1,87 @@
+"""Conditions as a configuration names them."""
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Discriminator, Field, Tag
+
+from jaxleas.conditions.catalogue import CONDITIONS, SURROGATE
+from jaxleas.configuration.registry import is_own
+from jaxleas.configuration.strict import Strict
+from jaxleas.files import digest_of
+
+STANDARD = ("strict_reachability", "collision")
+"""R* and C: what every policy is judged by (T 3.3.1)."""
+
+
+class SurrogateSettings(Strict):
+    """A contact planner's learned stand-in that ends episodes, too."""
+
+    surrogate: Annotated[str, Field(min_length=1)]
+    """File written by `jaxleas fit`, found from the working folder."""
+    threshold: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    """The risk dial: a walk ends where the planner got so far with less than this probability. 0
+    fails as often as the planner would."""
+    sha256: str | None = None
+    """Digest of the file, recorded when a run begins."""
+
+
+def _kind(value: Any) -> str:
+    return "surrogate" if isinstance(value, dict | SurrogateSettings) else "name"
+
+
+Named = Annotated[
+    Annotated[str, Tag("name")] | Annotated[SurrogateSettings, Tag("surrogate")],
+    Discriminator(_kind),
+]
+
+
+def _require_known(named: tuple[Named, ...]) -> tuple[Named, ...]:
+    """Refuse names that no condition has, and surrogates that are too many or alone."""
+    names = [each for each in named if isinstance(each, str)]
+    for name in names:
+        if name == SURROGATE:
+            raise ValueError("a surrogate needs its file: {surrogate: FILE}")
+        if not is_own(name) and name not in CONDITIONS:
+            raise ValueError(f"there is no condition {name!r}{CONDITIONS.hint(name)}")
+    if not names:
+        raise ValueError(
+            f"a configuration must be judged by itself, too: give {', '.join(STANDARD)} beside it"
+        )
+    if len(named) - len(names) > 1:
+        raise ValueError("it names two surrogates, and an episode can follow one: leave one out")
+    return named
+
+
+NamedConditions = Annotated[tuple[Named, ...], Field(min_length=1), AfterValidator(_require_known)]
+"""At least one name of a condition, and at most one surrogate."""
+
+
+def pinned(named: tuple[Named, ...]) -> tuple[Named, ...]:
+    """Return the same conditions with each file by its absolute path and its digest.
+
+    Raises:
+        InputError: a file is missing.
+    """
+    return tuple(
+        each
+        if isinstance(each, str)
+        else each.model_copy(
+            update={
+                "surrogate": str(Path(each.surrogate).absolute()),
+                "sha256": digest_of(each.surrogate),
+            }
+        )
+        for each in named
+    )
+
+
+def harmless(named: tuple[Named, ...], allow: Collection[str] = ()) -> bool:
+    """Return whether conditions are built in or allowed: neither other code nor a file.
+
+    Args:
+        named: conditions that a file states, a stranger's perhaps.
+        allow: each MODULE:CLASS that a person has named.
+    """
+    return all(isinstance(each, str) and (each in CONDITIONS or each in allow) for each in named)

@@ -1,0 +1,97 @@
+"""Terrain files of one's own that a configuration names."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Discriminator, Field, PositiveFloat, Tag
+
+from jaxleas.configuration.strict import Strict
+from jaxleas.files import digest_of, require_digest
+from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.importers import import_terrain
+from jaxleas.terrain.meshes import Up
+from jaxleas.types.errors import InputError
+
+KEY = "terrain.files"  # what errors call the place where files are named
+
+
+class TerrainFile(Strict):
+    """A terrain file, and what it does not say of itself."""
+
+    file: Annotated[str, Field(min_length=1)]
+    """.npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png; found from the working
+    folder"""
+    up: Up = "z"
+    """axis of a mesh that points up"""
+    scale: PositiveFloat = 1.0
+    """size of a mesh's unit [m]"""
+    z_min: float | None = None
+    """height of black in a .png [m]"""
+    z_max: float | None = None
+    """height of white in a .png [m]"""
+    zero_is_void: bool = False
+    """whether black in a .png means that there is no ground"""
+    sha256: str | None = None
+    """digest of the file, recorded when a run begins"""
+
+
+def _kind(value: Any) -> str:
+    return "file" if isinstance(value, dict | TerrainFile) else "path"
+
+
+Entry = Annotated[
+    Annotated[str, Tag("path")] | Annotated[TerrainFile, Tag("file")], Discriminator(_kind)
+]
+"""A path alone, or with what the file does not say of itself."""
+
+
+def pinned(files: Sequence[Entry]) -> tuple[TerrainFile, ...]:
+    """Return the same files by their absolute paths, each with its digest.
+
+    Raises:
+        InputError: a file is missing.
+    """
+    found = []
+    for each in map(_settled, files):
+        try:
+            digest = digest_of(each.file)
+        except InputError as error:
+            raise InputError(f"{KEY}: {error}") from error
+        absolute = str(Path(each.file).absolute())
+        found.append(each.model_copy(update={"file": absolute, "sha256": digest}))
+    return tuple(found)
+
+
+def read_own_terrain(files: Sequence[Entry], resolution: float) -> list[tuple[str, HeightMap]]:
+    """Return what errors call each file, and its height map.
+
+    Args:
+        files: files that a configuration names.
+        resolution: edge of a cell [m].
+
+    Raises:
+        InputError: one sentence with the key: a file is missing, has changed since its digest was
+            recorded, cannot be read, or has cells of another size.
+    """
+    maps = []
+    for each in map(_settled, files):
+        try:
+            require_digest(each.file, each.sha256)
+            height_map = import_terrain(
+                each.file,
+                resolution=resolution,
+                up=each.up,
+                scale=each.scale,
+                z_min=each.z_min,
+                z_max=each.z_max,
+                zero_is_void=each.zero_is_void,
+            )
+        except InputError as error:
+            raise InputError(f"{KEY}: {error}") from error
+        maps.append((f"{KEY}: {each.file}", height_map))
+    return maps
+
+
+def _settled(entry: Entry) -> TerrainFile:
+    return TerrainFile(file=entry) if isinstance(entry, str) else entry
