@@ -18,19 +18,20 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
     Args:
         parser: gets the options, and its description from the docstring's first line.
         function: annotated with numbers, text, paths, booleans, literals, and optional or
-            sequence types of these.
+            sequence types of these; the help of an `Annotated[str, REGISTRY]` lists its names.
     """
     text = inspect.getdoc(function) or ""
     parser.description = text.partition("\n\n")[0]
     helps = _argument_helps(text)
-    hints = typing.get_type_hints(function)
+    hints = typing.get_type_hints(function, include_extras=True)
     parameters = list(inspect.signature(function).parameters.values())
     starred = any(each.kind is each.KEYWORD_ONLY for each in parameters)
     for index, parameter in enumerate(parameters):
         name = parameter.name
         options = _options_of_type(hints.get(name, str))
         required = parameter.default is parameter.empty
-        options["help"] = helps.get(name, "").replace("%", "%%")
+        words = [helps.get(name, ""), *options.pop("names", ())]
+        options["help"] = " ".join(filter(None, words)).replace("%", "%%")
         positional = parameter.kind is not parameter.KEYWORD_ONLY and (starred or index == 0)
         if positional and required:
             parser.add_argument(name, metavar=name.upper(), **options)
@@ -57,7 +58,10 @@ def _options_of_type(annotation: Any) -> dict[str, Any]:
     if origin is typing.Literal:
         return {"choices": inner, "type": type(inner[0])}
     if origin is typing.Annotated:
-        return _options_of_type(inner[0])
+        options = _options_of_type(inner[0])
+        # A registry says what can be named; importing its class here would load NumPy for --help.
+        listed = [f"({each.describe()})" for each in inner[1:] if hasattr(each, "describe")]
+        return options | {"names": listed} if listed else options
     if origin in (typing.Union, types.UnionType):
         return _options_of_type(_plainest([each for each in inner if each is not type(None)]))
     if origin is tuple and Ellipsis not in inner:

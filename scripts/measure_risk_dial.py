@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import ask, walker
 from jaxleas.evaluation.result_file import now
@@ -28,7 +29,6 @@ from jaxleas.guide.loading import load_policy
 from jaxleas.guide.rb_kino import rb_kino
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.labels import Judge
-from jaxleas.labels.settings import settings_from
 from jaxleas.reports.risk_dial import draw_dial
 from jaxleas.surrogates import (
     FitSettings,

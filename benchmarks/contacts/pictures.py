@@ -15,7 +15,7 @@ from benchmarks.contacts.samples import SAMPLES as COUNTS
 from benchmarks.measurements import Measurement
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import parse_problem
-from jaxleas.contacts.sl1m import attempt
+from jaxleas.contacts.programs.attempt import attempt
 from jaxleas.files import atomic_path
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.contacts.rows import Row, milliseconds
 from jaxleas.contacts import certify, plan_mip, plan_sl1m
 from jaxleas.contacts.problem_file import parse_problem
-from jaxleas.contacts.sl1m import attempt
+from jaxleas.contacts.programs.attempt import attempt
 
 MODELS = ("two_com", "feet")
 

@@ -82,7 +82,11 @@ class Registry(Generic[Item]):
         """Return the end of a sentence about an unknown name: the nearest right one, and all."""
         close = difflib.get_close_matches(name, self.targets, n=1)
         meant = f"; perhaps you meant {close[0]}" if close else ""
-        return f"{meant}; there are {', '.join(self.targets)}, or MODULE:CLASS of your own"
+        return f"{meant}; there are {self.describe()}"
+
+    def describe(self) -> str:
+        """Return the list of names that an item can have."""
+        return f"{', '.join(self.targets)}, or MODULE:CLASS of your own"
 
 
 def is_own(name: str) -> bool:

@@ -14,6 +14,7 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.types.errors import InputError
 
+_Foot = tuple[str, np.ndarray, float]  # name, position [m], yaw [rad]
 TOLERANCE = 1e-6
 """A plan that violates a constraint by more than this [m] is no plan."""
 
@@ -48,16 +49,16 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
     stances = {name: (pose.position, pose.yaw) for name, pose in problem.initial.items()}
     worst = Violation(-math.inf, 0, "")
     for index, (phase, point) in enumerate(zip(problem.phases, footholds, strict=True)):
-        other = "RF" if phase.foot == "LF" else "LF"
-        standing, standing_yaw = stances[other]
-        found = [
-            *_on_surface(problem.surfaces[plan.surfaces[index]].vertices, point),
-            *_step(problem, phase.foot, other, point, standing, phase.yaw, standing_yaw),
-        ]
+        others = {name: stance for name, stance in stances.items() if name != phase.foot}
+        landing = phase.foot, point, phase.yaw
+        found = _on_surface(problem.surfaces[plan.surfaces[index]].vertices, point)
+        for name, (standing, yaw) in others.items():
+            found += _step(problem, landing, (name, standing, yaw))
         if problem.model == "two_com":
             assert plan.com is not None
-            feet = ((other, standing, standing_yaw), (phase.foot, point, phase.yaw))
+            ((name, (standing, yaw)),) = others.items()
             for number in (0, 1):
+                feet = (name, standing, yaw), landing
                 found += _com(problem, plan.com[index, number], number, feet)
         stances[phase.foot] = (point, phase.yaw)
         metres, constraint = max(found)
@@ -78,27 +79,21 @@ def _on_surface(corners: np.ndarray, point: np.ndarray) -> list[tuple[float, str
     ]
 
 
-def _step(
-    problem: ContactProblem,
-    foot: str,
-    other: str,
-    point: np.ndarray,
-    standing: np.ndarray,
-    yaw: float,
-    standing_yaw: float,
-) -> list[tuple[float, str]]:
+def _step(problem: ContactProblem, landing: _Foot, standing: _Foot) -> list[tuple[float, str]]:
+    (foot, point, yaw), (other, place, standing_yaw) = landing, standing
     if problem.model == "feet":  # A_{o_in_m} R_k^T (p_o - p_m) <= b
-        reach, local = problem.polytopes.foot[foot], _turn_back(standing - point, yaw)
+        name, local = f"{other}_in_{foot}", _turn_back(place - point, yaw)
     else:  # A_{m_in_o} R_{k-1}^T (p_m - p_o) <= b
-        reach, local = problem.polytopes.foot[other], _turn_back(point - standing, standing_yaw)
-    return [(_excess(reach.normals, reach.offsets, local), "reach of the step")]
+        name, local = f"{foot}_in_{other}", _turn_back(point - place, standing_yaw)
+    reach = problem.polytopes.relative[name]
+    return [(_excess(reach.normals, reach.offsets, local), f"reach of the step from {other}")]
 
 
 def _com(
     problem: ContactProblem,
     com: np.ndarray,
     number: int,
-    feet: tuple[tuple[str, np.ndarray, float], ...],
+    feet: tuple[_Foot, ...],
 ) -> list[tuple[float, str]]:
     found = []
     for name, position, yaw in feet:

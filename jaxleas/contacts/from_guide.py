@@ -7,8 +7,9 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
-from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Model, Phase
-from jaxleas.contacts.steps import rotation
+from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Phase
+from jaxleas.contacts.programs.steps import rotation
+from jaxleas.contacts.reference import reference_foothold
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
 from jaxleas.geometry.boxes import Box
@@ -23,8 +24,6 @@ EVERY = 14
 """One configuration of so many is kept, N_ref of T 5.2.3: 28 cm at 2 cm a configuration."""
 WINDOW = 0.8
 """Edge of the square around the root in which a foot may land (T 5.2.3) [m]."""
-BESIDE_ROOT = 0.0848
-"""The feet of the reference configuration stand this far beside the root [m]."""
 LEAST_PART = 1e-4
 """Less than this [m^2] of a surface is no candidate."""
 MOST_ASIDE = 0.2
@@ -55,13 +54,13 @@ def problem_from_guide(
     every: int = EVERY,
     candidates: Candidates = "window",
     window: float = WINDOW,
-    first_foot: str = "LF",
+    first_foot: str | None = None,
     polytopes: StepPolytopes | None = None,
 ) -> ContactProblem:
     """Make one step of each kept configuration, its foot oriented as the root is there.
 
     The feet first stand on the ground beside the first configuration; configurations `every`, 2
-    `every`, ... and the last of the guide are kept, and feet alternate.
+    `every`, ... and the last of the guide are kept, and feet move in turn, in the robot's order.
 
     Args:
         guide: a guide path.
@@ -72,23 +71,26 @@ def problem_from_guide(
         candidates: "window": what lies of the surfaces in a square around the root, turned with it;
             "rom": what lies in the range of motion of the leg that moves.
         window: the square's edge [m].
-        first_foot: which moves first.
+        first_foot: name of the foot that moves first; the robot's first foot by default.
         polytopes: instead of the robot's own.
 
     Raises:
         InputError: the guide is too short or not finite.
         NoGroundError: it leaves the scene (where is said).
     """
-    _require_usable(guide, every, window, first_foot)
+    _require_usable(guide, every, window)
     described = load_robot(robot)
+    feet = described.foot_names
+    turn = _first(described, feet, first_foot)
     surfaces = {
         name: make_surface(vertices, f"surface '{name}' of the scene")
         for name, vertices in scene.walkable.items()
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)
-    foot, phases, parts = first_foot, [], {}
+    phases, parts = [], {}
     for index in kept_configurations(len(guide), every):
+        foot = feet[(turn + len(phases)) % len(feet)]
         found = finder.find(guide.position[index], float(guide.yaw[index]), foot)
         if not found:
             x, y, z = guide.position[index]
@@ -106,7 +108,6 @@ def problem_from_guide(
                 guide.position[index],
             )
         )
-        foot = "RF" if foot == "LF" else "LF"
     return ContactProblem(
         robot=robot,
         model=model,
@@ -159,14 +160,14 @@ class _Finder:
         self.names = list(surfaces)
         self.corners = [surface.vertices for surface in surfaces.values()]
         self.packed = pack_polygons(self.corners)
-        reach = [limb.range_of_motion for limb in robot.limbs]
+        reach = [robot.limbs[index].range_of_motion for index in robot.feet]
         if candidates == "window":
             low = min(float(each.vertices[:, 2].min()) for each in reach)
             high = max(float(each.vertices[:, 2].max()) for each in reach)
             half = 0.5 * window
             square = Polytope.from_box(Box((-half, -half, low), (half, half, high)))
-            reach = [square, square]
-        self.reach: dict[str, Polytope] = dict(zip(FEET, reach, strict=True))
+            reach = [square] * len(reach)
+        self.reach: dict[str, Polytope] = dict(zip(robot.foot_names, reach, strict=True))
 
     def find(
         self, root: np.ndarray, yaw: float, foot: str
@@ -193,10 +194,11 @@ def _initial(
 ) -> dict[str, FootPose]:
     """Stand each foot on the ground nearest to its reference place beside the first root."""
     yaw, root = float(wrap_angle_on_host(guide.yaw[0])), guide.position[0]
-    lowest = min(float(limb.range_of_motion.vertices[:, 2].min()) for limb in robot.limbs)
+    legs = [robot.limbs[index].range_of_motion for index in robot.feet]
+    lowest = min(float(reach.vertices[:, 2].min()) for reach in legs)
     poses = {}
-    for foot, side in zip(FEET, (BESIDE_ROOT, -BESIDE_ROOT), strict=True):
-        place = root + rotation(yaw) @ np.array([0.0, side, 0.0])
+    for foot in robot.foot_names:
+        place = reference_foothold(robot, foot, root, yaw)
         found = [nearest_below(surface, place) for surface in surfaces.values()]
         reachable = [
             (aside, -float(point[2]), tuple(point.tolist()))
@@ -235,13 +237,25 @@ def nearest_below(
     return np.array([*target, z]), float(np.linalg.norm(target - place[:2]))
 
 
-def _require_usable(guide: GuidePath, every: int, window: float, first_foot: str) -> None:
+def _first(robot: Robot, feet: tuple[str, ...], first_foot: str | None) -> int:
+    """Return the number of the foot that moves first."""
+    if len(feet) < 2:
+        raise InputError(
+            f"robot '{robot.name}' has {len(feet)} feet; a step needs one that moves and one that"
+            " stands"
+        )
+    if first_foot is None:
+        return 0
+    if first_foot not in feet:
+        raise InputError(f"first foot must be {' or '.join(feet)}, not {first_foot!r}")
+    return feet.index(first_foot)
+
+
+def _require_usable(guide: GuidePath, every: int, window: float) -> None:
     if every < 1:
         raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
     if not 0.0 < window < 100.0:
         raise InputError(f"window {window} must be an edge in metres, 0.8 is usual")
-    if first_foot not in FEET:
-        raise InputError(f"first foot must be LF or RF, not {first_foot!r}")
     if len(guide) < 2:
         raise InputError(f"the guide has {len(guide)} configurations; a step needs at least 2")
     if not (np.isfinite(guide.position).all() and np.isfinite(guide.yaw).all()):

@@ -5,14 +5,16 @@ import math
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
+from jaxleas.robots import load_robot
 from jaxleas.terrain.polygons import is_vertical
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2
 """Between two configurations at most [m] and [rad]; [s] apart, as guide paths of LEAS are."""
-HEIGHTS = (0.85, 0.98)
-"""Of the root above the feet at the start: that of the first root, held within these [m]."""
+LOWER, HIGHER = 0.10, 0.03
+"""At the start the root stands as high above the feet as the first root does above their middle,
+but at most this far below and above the robot's walking height [m]."""
 
 
 def guide_from_problem(problem: ContactProblem) -> GuidePath:
@@ -36,7 +38,8 @@ def guide_from_problem(problem: ContactProblem) -> GuidePath:
     feet = list(problem.initial.values())
     middle = np.mean([foot.position for foot in feet], axis=0)
     roots = np.array([phase.root for phase in problem.phases])
-    height = float(np.clip(roots[0, 2] - middle[2], *HEIGHTS))
+    usual = load_robot(problem.robot).walking_height
+    height = float(np.clip(roots[0, 2] - middle[2], usual - LOWER, usual + HIGHER))
     heading = math.atan2(*(sum(part(foot.yaw) for foot in feet) for part in (math.sin, math.cos)))
     places = np.concatenate([(middle + np.array([0.0, 0.0, height]))[None], roots])
     yaws = np.unwrap([heading, *(phase.yaw for phase in problem.phases)])

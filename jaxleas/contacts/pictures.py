@@ -1,5 +1,6 @@
 """A contact plan from above and from the side: scene, guide, footholds, centre of mass."""
 
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -7,15 +8,18 @@ import numpy as np
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import rotation
+from jaxleas.contacts.programs.steps import rotation
 from jaxleas.files import atomic_path
+from jaxleas.robots.effector import LIMB_OF_FOOT
 from jaxleas.types import GuidePath
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = {"LF": "tab:red", "RF": "goldenrod"}
+COLOURS = ("tab:red", "goldenrod", "tab:green", "tab:purple", "tab:cyan", "tab:brown")
+"""Of the effectors, in the robot's order."""
+FULL_NAMES = {name: f"{limb} foot" for name, limb in LIMB_OF_FOOT.items()}
 GUIDE, COM, FAILED = "tab:blue", "black", "magenta"
 VIEWS = {"above": (0, 1), "from the side": (0, 2)}
 """Which coordinates each view shows."""
@@ -39,9 +43,10 @@ def draw_plan(
 ) -> None:
     """Draw a plan, or where planning fails, in two views.
 
-    Surfaces are grey, the guide blue, left feet red and right feet yellow, the centre of mass
-    black. Without a plan, the candidates of the first step that cannot be made are outlined, and
-    the reason is the title, and the feet are those of the phases before, where these are given.
+    Surfaces are grey, the guide blue, left feet red and right feet yellow, those of other robots in
+    further colours, the centre of mass black. Without a plan, the candidates of the first step that
+    cannot be made are outlined, and the reason is the title, and the feet are those of the phases
+    before, where these are given.
 
     Args:
         path: of the picture (.png, .svg, .pdf).
@@ -128,15 +133,17 @@ def _draw_feet(
     if len(places):
         com = np.reshape(places, (-1, 3))[:, list(shown)]
         ax.plot(*com.T, "-", color=COM, linewidth=0.8, label="centre of mass", zorder=4)
+    colours = dict(zip(problem.effectors, cycle(COLOURS), strict=False))
     labelled = set()
     for foot, point, yaw in feet:
         corners = point + sole(problem.foot_half_size) @ rotation(yaw).T
-        label = None if foot in labelled else {"LF": "left foot", "RF": "right foot"}[foot]
+        label = None if foot in labelled else FULL_NAMES.get(foot, foot)
+        colour = colours[foot]
         labelled.add(foot)
         ax.fill(
             *corners[:, list(shown)].T,
-            facecolor=COLOURS[foot],
-            edgecolor=COLOURS[foot],
+            facecolor=colour,
+            edgecolor=colour,
             alpha=0.75,
             label=label,
             zorder=3,

@@ -2,15 +2,16 @@
 
 import math
 import time
+from collections.abc import Sequence
 
 import numpy as np
 
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.planners import PlannerError, require_time_limit
+from jaxleas.contacts.planner import PlannerError, require_time_limit
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
 from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.planner import _Walk
@@ -51,12 +52,13 @@ def plan_sampling(
     require_time_limit(time_limit)
     settings, robot = settings or SamplingSettings(), robot or load_robot("talos")
     world = make_world(robot, [scene], settings)
+    feet = robot.foot_names
     begin = time.perf_counter()
     walk = _TimedWalk(world, guide, begin + time_limit)
     _require_over(scene, guide)
     walked = walk.plans()[0]
     seconds = time.perf_counter() - begin
-    plan = contact_plan(walked, settings.contact_lift).but(seconds=seconds)
+    plan = contact_plan(walked, feet, settings.contact_lift).but(seconds=seconds)
     if walked.ending == "no_contact":
         plan = plan.but(reason=f"{plan.reason}: {walk.why()}")
     if walked.ending == "time_limit":
@@ -71,14 +73,15 @@ def plan_sampling(
     return plan.but(max_violation=certificate.worst.metres)
 
 
-def contact_plan(walked: SamplingPlan, gap: float) -> ContactPlan:
+def contact_plan(walked: SamplingPlan, feet: Sequence[str], gap: float) -> ContactPlan:
     """Return the sampling-based planner's answer as a contact plan, without certificate.
 
     Args:
         walked: the answer.
+        feet: names of the robot's feet, in its order.
         gap: between a standing sole and its surface, `SamplingSettings.contact_lift` [m].
     """
-    postures = tuple(_posture(walked, row, gap) for row in range(len(walked)))
+    postures = tuple(_posture(walked, row, feet, gap) for row in range(len(walked)))
     made = [posture for posture in postures if posture.moved is not None]
     footholds = [each.feet[each.moved].position for each in made if each.moved]
     return ContactPlan(
@@ -164,18 +167,18 @@ class _TimedWalk(_Walk):
         return super()._go_on()
 
 
-def _posture(walked: SamplingPlan, row: int, gap: float) -> Posture:
-    feet = {}
-    for limb, foot in enumerate(FEET):
+def _posture(walked: SamplingPlan, row: int, feet: Sequence[str], gap: float) -> Posture:
+    poses = {}
+    for limb, foot in enumerate(feet):
         rotation = walked.rotations[row, limb]
         sole = walked.soles[row, limb] - gap * rotation[:, 2]
-        feet[foot] = FootPose(sole, math.atan2(rotation[1, 0], rotation[0, 0]))
+        poses[foot] = FootPose(sole, math.atan2(rotation[1, 0], rotation[0, 0]))
     moved = int(walked.moved[row])
     return Posture(
         configuration=int(walked.index[row]),
         how=walked.how[row],
-        moved=None if moved < 0 else FEET[moved],
-        feet=feet,
-        surfaces=dict(zip(FEET, walked.surfaces[row], strict=True)),
+        moved=None if moved < 0 else feet[moved],
+        feet=poses,
+        surfaces=dict(zip(feet, walked.surfaces[row], strict=True)),
         com=walked.com[row],
     )

@@ -1,17 +1,15 @@
-"""How far a step and the centre of mass reach: four polytopes in the frame of a foot."""
+"""How far a step and the centre of mass reach: polytopes in the frame of an effector."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 
 import numpy as np
-from jaxtyping import Float
 
 from jaxleas.files import refuse_misspelt_keys
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.robots import load_robot
 from jaxleas.types.errors import InputError
-
-NAMES = ("RF_in_LF", "LF_in_RF", "COM_in_LF", "COM_in_RF")
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,17 +17,33 @@ class StepPolytopes:
     """Relative reach; "X_in_Y" is X's position in Y's frame (x forward, y left, z up).
 
     Attributes:
-        foot: by the standing foot: where the other one may be, e.g. `foot["LF"]` is RF_in_LF.
-        com: by the foot: where the centre of mass may be; empty for the model "feet".
+        relative: where one effector may be in another one's frame, by names such as "RF_in_LF".
+        com: where the centre of mass may be, by the effector; empty for the model "feet".
     """
 
-    foot: dict[str, Polytope]
+    relative: dict[str, Polytope]
     com: dict[str, Polytope]
 
-    @cached_property
-    def foot_corners(self) -> dict[str, Float[np.ndarray, "V 3"]]:
-        """Corners of each foot polytope [m]."""
-        return {name: polytope.vertices for name, polytope in self.foot.items()}
+    def reach(self, moving: str, standing: str) -> Polytope:
+        """Return where one effector may be in the frame of another one."""
+        return self.relative[relative_name(moving, standing)]
+
+
+def relative_name(moving: str, standing: str) -> str:
+    """Return the name of the polytope of one effector in the frame of another one."""
+    return f"{moving}_in_{standing}"
+
+
+def polytope_names(effectors: Sequence[str], model: str) -> tuple[str, ...]:
+    """Return the names of all polytopes that a model of steps needs.
+
+    Args:
+        effectors: names of the effectors that step or stand.
+        model: "feet" or "two_com".
+    """
+    pairs = [(one, other) for other in effectors for one in effectors if one != other]
+    relative = [relative_name(*pair) for pair in pairs]
+    return (*relative, *(f"COM_in_{each}" for each in effectors if model == "two_com"))
 
 
 def make_polytope(A: np.ndarray, b: np.ndarray) -> Polytope:
@@ -38,24 +52,36 @@ def make_polytope(A: np.ndarray, b: np.ndarray) -> Polytope:
     return Polytope(A / length[:, None], b / length)
 
 
-def read_polytopes(where: str, content: object, model: str) -> StepPolytopes:
+def read_polytopes(
+    where: str, content: object, model: str, effectors: Sequence[str], others: Sequence[str] = ()
+) -> StepPolytopes:
     """Return the polytopes of a parsed {"RF_in_LF": {"A", "b"}, ...}.
+
+    Args:
+        where: names the file, for messages.
+        content: parsed object.
+        model: "feet" or "two_com".
+        effectors: names of the effectors that step or stand.
+        others: names of effectors whose polytopes may be there, too.
 
     Raises:
         InputError: one is missing or malformed; says which.
     """
-    needed = NAMES if model == "two_com" else NAMES[:2]
+    needed = polytope_names(effectors, model)
+    known = polytope_names([*effectors, *others], "two_com")
     if not isinstance(content, dict):
         raise InputError(f"{where} must be an object with {', '.join(needed)}, each {{A, b}}")
     missing = [name for name in needed if name not in content]
     if missing:
         raise InputError(f"{where} lacks {', '.join(missing)}, which model '{model}' needs")
-    refuse_misspelt_keys(where, content, NAMES)
-    made = {name: _polytope(f"{where}: {name}", content[name]) for name in NAMES if name in content}
-    return StepPolytopes(
-        foot={name[-2:]: each for name, each in made.items() if not name.startswith("COM")},
-        com={name[-2:]: each for name, each in made.items() if name.startswith("COM")},
-    )
+    refuse_misspelt_keys(where, content, known)
+    made = {name: _polytope(f"{where}: {name}", content[name]) for name in known if name in content}
+    com = {name.removeprefix("COM_in_"): each for name, each in made.items() if _is_com(name)}
+    return StepPolytopes({name: each for name, each in made.items() if not _is_com(name)}, com)
+
+
+def _is_com(name: str) -> bool:
+    return name.startswith("COM_in_")
 
 
 def _polytope(where: str, content: object) -> Polytope:
@@ -85,20 +111,29 @@ def _polytope(where: str, content: object) -> Polytope:
 
 
 @cache
-def load_step_polytopes(robot: str) -> StepPolytopes:
+def load_step_polytopes(robot: str, effectors: tuple[str, ...] | None = None) -> StepPolytopes:
     """Return the step polytopes of a robot, which its file holds.
+
+    Args:
+        robot: name of the robot.
+        effectors: names of the effectors that step or stand; its feet by default.
 
     Raises:
         InputError: there are none for this robot.
     """
     try:
-        steps = load_robot(robot).steps
+        described = load_robot(robot)
     except InputError as error:
         raise InputError(_no_steps(robot)) from error
+    steps = described.steps
     if not steps:
         raise InputError(_no_steps(robot))
     content = {name: {"A": each.normals, "b": each.offsets} for name, each in steps.items()}
-    return read_polytopes(f"robot {robot}: steps", content, "two_com")
+    every = [each.name for each in described.effectors]
+    used = effectors or described.foot_names
+    others = [name for name in every if name not in used]
+    model = "two_com" if any(map(_is_com, steps)) else "feet"
+    return read_polytopes(f"robot {robot}: steps", content, model, used, others)
 
 
 def _no_steps(robot: str) -> str:

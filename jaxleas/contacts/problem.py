@@ -1,4 +1,4 @@
-"""The contact problem: which foot moves when, onto which of which surfaces (T 5.1, B.1)."""
+"""The contact problem: which effector moves when, onto which of which surfaces (T 5.1, B.1)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -9,18 +9,18 @@ from jaxtyping import Float
 
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.surfaces import ContactSurface
+from jaxleas.types.errors import InputError
 
 Model = Literal["two_com", "feet"]
-FEET: tuple[str, str] = ("LF", "RF")
-"""Left before right."""
+TWO = 2  # effectors that the model two_com knows: the centre of mass is over one, then the other
 
 
 @dataclass(frozen=True, eq=False)
 class FootPose:
-    """Where a foot stands.
+    """Where an effector stands, its frame turned about the vertical alone.
 
     Attributes:
-        position: of the middle of the sole in the world [m].
+        position: of the middle of what touches in the world [m].
         yaw: heading [rad].
     """
 
@@ -33,7 +33,7 @@ class Phase:
     """One step.
 
     Attributes:
-        foot: that moves, "LF" or "RF".
+        foot: name of the effector that moves, such as "LF"; the others stand.
         yaw: heading with which it lands [rad].
         candidates: names of the surfaces it may land on.
         root: of the guide path, in the world [m], where there is one.
@@ -54,11 +54,14 @@ class ContactProblem:
         model: "feet" (relative foot polytopes only) or "two_com" (T app. B: two positions of the
             centre of mass a phase besides).
         surfaces: by name.
-        initial: where each foot stands before the first phase.
+        initial: where each effector stands before the first phase, in the robot's order.
         phases: in order; the last one's candidates are the goal.
         polytopes: how far a step and the centre of mass reach.
         foot_half_size: half length and half width of the sole [m].
         parts: of surfaces that are part of another one: its name.
+
+    Raises:
+        InputError: model "two_com" is asked for other than two effectors, or without its polytopes.
     """
 
     robot: str
@@ -70,9 +73,29 @@ class ContactProblem:
     foot_half_size: tuple[float, float]
     parts: Mapping[str, str] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        if self.model != "two_com":
+            return
+        if len(self.initial) != TWO:
+            raise InputError(
+                f"model two_com is of two feet, and {len(self.initial)} stand here"
+                f" ({', '.join(self.initial)}): ask for model feet"
+            )
+        missing = [f"COM_in_{name}" for name in self.initial if name not in self.polytopes.com]
+        if missing:
+            raise InputError(
+                f"robot {self.robot!r} has no step polytopes {', '.join(missing)}, which model"
+                " two_com needs: give them, or ask for model feet"
+            )
+
     def __len__(self) -> int:
         """Return the number of phases."""
         return len(self.phases)
+
+    @property
+    def effectors(self) -> tuple[str, ...]:
+        """Names of the effectors that step or stand."""
+        return tuple(self.initial)
 
     @property
     def whole_surfaces(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
-from jaxleas.contacts.problem import FEET, ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
@@ -55,13 +55,14 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
     if model not in ("two_com", "feet"):
         raise InputError(f"{where}: model must be 'two_com' or 'feet', not {model!r:.60}")
     surfaces = _surfaces(where, content["surfaces"])
+    initial = _initial(where, content["initial"], content["robot"])
     problem = ContactProblem(
         robot=content["robot"],
         model=model,
         surfaces=surfaces,
-        initial=_initial(where, content["initial"]),
-        phases=_phases(where, content["phases"], surfaces),
-        polytopes=_polytopes(where, content, model),
+        initial=initial,
+        phases=_phases(where, content["phases"], surfaces, tuple(initial)),
+        polytopes=_polytopes(where, content, model, tuple(initial)),
         foot_half_size=_foot_half_size(where, content),
         parts=_parts(where, content.get("parts"), surfaces),
     )
@@ -72,8 +73,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
 def write_problem(path: str | Path, problem: ContactProblem) -> None:
     """Write a problem as JSON, whole or not at all."""
     polytopes = problem.polytopes
-    named = {f"{'RF' if foot == 'LF' else 'LF'}_in_{foot}": p for foot, p in polytopes.foot.items()}
-    named |= {f"COM_in_{foot}": p for foot, p in polytopes.com.items()}
+    named = polytopes.relative | {f"COM_in_{foot}": p for foot, p in polytopes.com.items()}
     write_json(
         path,
         {
@@ -135,11 +135,11 @@ def _surface(where: str, content: Any) -> ContactSurface:
     return make_surface(np.array([_vector(where, each) for each in content]).reshape(-1, 3), where)
 
 
-def _initial(where: str, content: Any) -> dict[str, FootPose]:
-    if not isinstance(content, dict) or content.keys() != set(FEET):
-        raise InputError(f"{where}: initial must say where LF and RF stand, and no other foot")
+def _initial(where: str, content: Any, robot: str) -> dict[str, FootPose]:
+    if not isinstance(content, dict) or not content:
+        raise InputError(f"{where}: initial must say where each foot stands")
     poses = {}
-    for foot in FEET:
+    for foot in _effectors(where, list(content), robot):
         here, pose = f"{where}: initial {foot}", content[foot]
         if not isinstance(pose, dict) or not {"position", "yaw"} <= pose.keys():
             raise InputError(f"{here} must be an object with position and yaw")
@@ -149,23 +149,51 @@ def _initial(where: str, content: Any) -> dict[str, FootPose]:
     return poses
 
 
-def _phases(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> tuple[Phase, ...]:
+def _effectors(where: str, named: list[str], robot: str) -> list[str]:
+    """Return the effectors that stand, in the robot's order: all its feet, and palms where named.
+
+    Of a robot that is not known here, which a problem with polytopes may be of: those named.
+    """
+    try:
+        known = load_robot(robot)
+    except InputError:
+        if len(named) < 2 or not all(named):
+            raise InputError(f"{where}: initial must say where two or more feet stand") from None
+        return named
+    feet = known.foot_names
+    others = [each.name for each in known.effectors if each.name not in feet]
+    wrong = [name for name in named if name not in (*feet, *others)]
+    if wrong or not set(feet) <= set(named):
+        palms = f" (and may say so of {', '.join(others)})" if others else ""
+        raise InputError(
+            f"{where}: initial must say where {' and '.join(feet)} stand{palms}, and no other foot"
+        )
+    return [each.name for each in known.effectors if each.name in named]
+
+
+def _phases(
+    where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
+) -> tuple[Phase, ...]:
     if not isinstance(content, list) or not content:
         raise InputError(f"{where}: phases must be a list of at least one phase")
     if len(content) > MAX_PHASES:
         raise InputError(f"{where} has {len(content)} phases, more than {MAX_PHASES}")
     return tuple(
-        _phase(f"{where}: phase {index}", each, surfaces) for index, each in enumerate(content)
+        _phase(f"{where}: phase {index}", each, surfaces, effectors)
+        for index, each in enumerate(content)
     )
 
 
-def _phase(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> Phase:
+def _phase(
+    where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
+) -> Phase:
     if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
         raise InputError(f"{where} must be an object with foot, yaw and candidates")
     refuse_misspelt_keys(where, content, OF_A_PHASE)
     _refuse_other_rotations(where, content)
-    if content["foot"] not in FEET:
-        raise InputError(f"{where}: foot must be 'LF' or 'RF', not {content['foot']!r:.60}")
+    if content["foot"] not in effectors:
+        names = " or ".join(map(repr, effectors))
+        raise InputError(f"{where}: foot must be {names}, not {content['foot']!r:.60}")
     names = content["candidates"]
     if not isinstance(names, list):
         raise InputError(f"{where}: candidates must be a list of names, not {names!r:.60}")
@@ -193,11 +221,13 @@ def _refuse_other_rotations(where: str, content: dict[str, Any]) -> None:
             )
 
 
-def _polytopes(where: str, content: dict[str, Any], model: str) -> StepPolytopes:
+def _polytopes(
+    where: str, content: dict[str, Any], model: str, effectors: tuple[str, ...]
+) -> StepPolytopes:
     given = content.get("polytopes")
     if given is None:
-        return load_step_polytopes(content["robot"])
-    return read_polytopes(f"{where}: polytopes", given, model)
+        return load_step_polytopes(content["robot"], effectors)
+    return read_polytopes(f"{where}: polytopes", given, model, effectors)
 
 
 def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:

@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.distillation.folder import RoundFolder, read_done
-from jaxleas.distillation.labelling import Collection, Oracle, label_round
+from jaxleas.distillation.labelling import Collection, label_round
 from jaxleas.distillation.practice import practice_config, practise, read_run
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
+from jaxleas.labels import Oracle
 from jaxleas.surrogates import (
     Surrogate,
     SurrogateForesight,
@@ -59,7 +60,8 @@ class AgainstSurrogate:
                 Collection(
                     policy, self._surrogate, place.config.collect, place.config.seed + number
                 ),
-                Oracle(place.config.planner, place.labelling, place.workers),
+                Oracle(place.config.planner, place.labelling, place.run_config.env.robot),
+                place.workers,
                 lambda done, total: say(
                     f"round {number}: {done} of {total} guide paths judged", passing=True
                 ),

@@ -27,6 +27,7 @@ def distill(
     import os
 
     from jaxleas.configuration.loading import load_config
+    from jaxleas.contacts.registry import permit
     from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
@@ -34,7 +35,6 @@ def distill(
     from jaxleas.distillation.table import table_of
     from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
-    from jaxleas.labels.own_planner import require_said
     from jaxleas.training.cores import share_cores
     from jaxleas.training.devices import choose_devices
     from jaxleas.xla.compilation import keep_compiled_programs
@@ -46,15 +46,16 @@ def distill(
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
     asked = load_config(DistillationConfig, config)
-    require_said(config, asked.planner, planner)
+    allow = permit(config, asked.planner, planner)
     ppo = first_run(asked, start).ppo
     if asked.mode == "surrogate":
         share_cores(ppo)
     sharing = choose_devices(devices or "all", ppo)
-    settled = open_folder(folder, asked, start)
+    settled = open_folder(folder, asked, start, allow)
     with FolderLock(folder.path, "the distillation", "give another --out"):
         run = train_start(folder, settled, sharing)
-        place = Workplace(settled, folder, str(run), processes or os.cpu_count() or 1, sharing)
+        count = processes or os.cpu_count() or 1
+        place = Workplace(settled, folder, str(run), count, sharing, allow)
         results = run_rounds(place, _Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""

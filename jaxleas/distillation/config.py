@@ -1,6 +1,5 @@
 """What a distillation is told: which planner, how many rounds, and what is done in each."""
 
-import re
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
@@ -8,6 +7,7 @@ from pydantic import AfterValidator, Field, JsonValue, field_validator, model_va
 
 from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Whole
 from jaxleas.configuration.strict import Strict
+from jaxleas.contacts.registry import DEFAULT_JUDGE, require_planner_name
 from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
 from jaxleas.evaluation.recipes import RECIPES
 from jaxleas.surrogates.settings import FitSettings
@@ -16,14 +16,6 @@ from jaxleas.training.config import RunConfig
 SteeringRun = RunConfig[SteeringConfig, TerrainConfig]
 Observation = Literal["thesis144", "thesis145", "icra81"]
 RewardTerm = Literal["direction", "orientation", "turn", "acceleration", "alive", "failure"]
-PLANNERS = ("sampling", "mip", "sl1m")
-
-
-def _planner(name: str) -> str:
-    """Refuse what cannot be a planner; whether there is one of that name is asked later."""
-    if name not in PLANNERS and not re.fullmatch(r"[\w.]+:\w+", name):
-        raise ValueError(f"it should be {', '.join(PLANNERS)}, or MODULE:CLASS of your own")
-    return name
 
 
 class CollectConfig(Strict):
@@ -111,8 +103,8 @@ class DistillationConfig(Strict):
 
     mode: Literal["surrogate", "faithful"] = "surrogate"
     """Who ends episodes in practice: a surrogate of the planner, or the exact planner itself."""
-    planner: Annotated[str, AfterValidator(_planner)] = "sampling"
-    """sampling, mip, sl1m, or MODULE:CLASS of one's own, which the command line must name, too."""
+    planner: Annotated[str, AfterValidator(require_planner_name)] = DEFAULT_JUDGE
+    """Name of a planner, or MODULE:CLASS of one's own, which the command line must name, too."""
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""
     rounds: Count = 4

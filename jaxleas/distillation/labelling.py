@@ -15,7 +15,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.world import World
 from jaxleas.files import write_json
 from jaxleas.guide.files import Reason, write_guide_paths
-from jaxleas.labels import PlannerSettings, Workers, label_shards, plan_shards
+from jaxleas.labels import Oracle, Workers, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.training.policy import Policy
@@ -34,21 +34,6 @@ class Ground:
     env: SteeringEnv
     world: World
     scenes: tuple[Scene, ...]
-
-
-@dataclass(frozen=True)
-class Oracle:
-    """An exact planner that labels.
-
-    Attributes:
-        planner: name of the planner.
-        settings: settings of the planner.
-        workers: workers that ask it.
-    """
-
-    planner: str
-    settings: PlannerSettings
-    workers: Workers
 
 
 @dataclass(frozen=True)
@@ -73,6 +58,7 @@ def label_round(
     ground: Ground,
     collection: Collection,
     oracle: Oracle,
+    workers: Workers,
     progress: Callable[[int, int], None],
 ) -> None:
     """Leave scenes, guide paths and verdicts in a round's folder; what is there stays.
@@ -82,6 +68,7 @@ def label_round(
         ground: terrains to walk on.
         collection: guide paths to collect.
         oracle: exact planner to ask about them.
+        workers: workers that ask it.
         progress: called with the number of guide paths that have verdicts, and of all.
     """
     begun = time.perf_counter()
@@ -102,8 +89,7 @@ def label_round(
         for shard in plan_shards(
             [guides],
             guides.with_name(guides.name.replace("guides", "scene")).with_suffix(".json"),
-            oracle.planner,
-            oracle.settings,
+            oracle,
             folder.labels / "verdicts",
         )
     ]
@@ -114,7 +100,7 @@ def label_round(
         done += count
         progress(done, total)
 
-    judged, _ = label_shards(shards, oracle.workers, advance)
+    judged, _ = label_shards(shards, workers, advance)
     seconds = time.perf_counter() - begun
     write_json(folder.labelled, {"guides": total, "judged": judged, "seconds": round(seconds, 1)})
 

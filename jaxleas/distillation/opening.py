@@ -1,14 +1,16 @@
 """Begin a distillation's folder: its configuration, and the policy to begin with."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import find_planner
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.files import write_json, write_text
-from jaxleas.labels.settings import settings_from
 from jaxleas.runs.folder import RunFolder
 from jaxleas.training.devices import Devices
 from jaxleas.training.loop import train
@@ -17,17 +19,27 @@ from jaxleas.types.errors import InputError
 
 
 def open_folder(
-    folder: DistillationFolder, config: DistillationConfig, start: Path | None
+    folder: DistillationFolder,
+    config: DistillationConfig,
+    start: Path | None,
+    allow: Collection[str] = (),
 ) -> DistillationConfig:
     """Write the configuration, and where the policy to begin with lies; or go on in a folder.
+
+    Args:
+        folder: folder of the distillation.
+        config: its configuration.
+        start: run folder of the policy to begin with, if one is given.
+        allow: planners of the user's own that may be imported, each MODULE:CLASS.
 
     Raises:
         InputError: the folder is something else's, or a distillation's with another configuration
             or another policy to begin with; the planner's parameters cannot be used; or `start` is
             no run folder.
     """
-    settings_from(config.planner, **config.parameters)
-    settings_from(config.planner, **config.labelling_parameters)
+    planner = find_planner(config.planner, allow)
+    settings_from(planner, **config.parameters)
+    settings_from(planner, **config.labelling_parameters)
     if start is not None:
         RunFolder.open(start)
     where = None if start is None else str(Path(start).resolve())

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration.loading import load_config
+from jaxleas.contacts.registry import title_of
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, read_run_data
@@ -11,13 +12,11 @@ from jaxleas.distillation.report_pictures import draw_calibration, draw_learning
 from jaxleas.evaluation.titles import cell_title
 from jaxleas.files import write_text
 from jaxleas.reports import draw_figures, inline, page_template, percent, thesis, thesis_tables
-from jaxleas.reports.side_by_side import PLANNER_TITLES
 from jaxleas.reports.side_by_side import headings as side_headings
 from jaxleas.reports.side_by_side import rows as side_rows
 
 TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # of what a surrogate is worth
-LEARNING = {"sampling": "4.7", "mip": "5.5"}
 
 
 def write_distilled_report(run: Path, out: Path | None = None) -> Path:
@@ -43,7 +42,7 @@ def render(data: RunData, config: DistillationConfig) -> str:
     best = data.best
     return page_template("jaxleas.distillation", TEMPLATE).render(
         name=data.path.resolve().name,
-        planner=PLANNER_TITLES[config.planner],
+        planner=title_of(config.planner),
         mode=config.mode,
         headlines=headlines(data, config),
         starts=config.judge.starts,
@@ -56,7 +55,7 @@ def render(data: RunData, config: DistillationConfig) -> str:
         labels=data.labels,
         percent=percent,
         learning=inline(draw_learning(data.start, data.practice)) if data.practice else None,
-        learned=thesis().figures.get(LEARNING.get(config.planner, ""), ""),
+        learned=thesis().learning_of(config.planner),
         tables=[table for table in thesis_tables(data.evaluations) if not table.is_empty],
         sides=[
             (each, side_headings(each), side_rows(each))

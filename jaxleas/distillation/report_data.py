@@ -10,8 +10,10 @@ from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds
 from jaxleas.evaluation.figure_file import Figures, read_figures
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation
+from jaxleas.evaluation.titles import refined_name
 from jaxleas.files import is_file
 from jaxleas.labels.shards import read_verdicts
+from jaxleas.reports.published import printed_planners
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.types.errors import InputError
 
@@ -121,13 +123,13 @@ def _read_evaluations(data: RunData, run: Path, start: Path, planner: str) -> No
     for file in sorted(folder.glob("*.json")) if folder.is_dir() else ():
         if file.name != FIGURES:
             data.evaluations.append(read_evaluation(file))
-    name = f"leas_p2_{planner}"
+    name, printed = refined_name(planner), " ".join(printed_planners())
     policies = f"--policies {name}={run}/policy.npz"
     if not any(each.suite == "thesis" for each in data.evaluations):
         data.missing.append(
             Missing(
                 "tables 4.1, 4.2, 4.3: no evaluation of the suite thesis",
-                f"jaxleas evaluate {start} --suite thesis --planners sampling {policies}"
+                f"jaxleas evaluate {start} --suite thesis --planners {printed} {policies}"
                 f" --json {folder}/thesis.json",
             )
         )

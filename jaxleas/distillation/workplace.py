@@ -1,7 +1,10 @@
 """What every stage of a distillation works with: planner, policy's task, training terrain."""
 
+from collections.abc import Collection
 from functools import cached_property
 
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import find_planner
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.labelling import Ground
@@ -11,7 +14,6 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.task import Steering
 from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
 from jaxleas.labels.judging import PLANNER_MODULES
-from jaxleas.labels.settings import settings_from
 from jaxleas.surrogates import Identity
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.training.devices import Devices, one_device
@@ -44,6 +46,7 @@ class Workplace:
         start: str,
         processes: int,
         devices: Devices | None = None,
+        allow: Collection[str] = (),
     ):
         """Prepare; nothing is computed yet.
 
@@ -53,22 +56,23 @@ class Workplace:
             start: run folder of the policy to begin with.
             processes: that ask the planner.
             devices: that share the practice; by default the first.
+            allow: planners of the user's own that may be imported, each MODULE:CLASS.
 
         Raises:
             InputError: the planner's parameters cannot be used, or there is no such run.
         """
         self.config, self.folder, self._start = config, folder, start
-        self.settings: PlannerSettings = settings_from(config.planner, **config.parameters)
-        self.labelling: PlannerSettings = settings_from(
-            config.planner, **config.labelling_parameters
-        )
+        planner = find_planner(config.planner, allow)
+        self.settings: PlannerSettings = settings_from(planner, **config.parameters)
+        self.labelling: PlannerSettings = settings_from(planner, **config.labelling_parameters)
         self.devices = devices or one_device()
         own, self.learned = widen(*read_run(start), config.practice.observation)
         terrain = config.practice.terrain or own.terrain
         self.run_config = own.model_copy(update={"terrain": terrain})
         self.env = SteeringEnv(self.run_config.env)
         self.workers = ProcessWorkers(processes, PLANNER_MODULES)
-        self.judge = Judge(config.planner, self.settings, workers=self.workers)
+        robot = self.run_config.env.robot
+        self.judge = Judge(config.planner, self.settings, workers=self.workers, robot=robot)
 
     @cached_property
     def policy(self) -> Policy:

@@ -62,8 +62,9 @@ def compare(
     workers = planner_workers(planning.processes)
     with ExitStack() as stack:
         stack.callback(workers.close)
+        robot = candidate.env.config.robot
         judges = {
-            name: Judge(name, planning.settings.get(name), workers=workers)
+            name: Judge(name, planning.settings.get(name), workers=workers, robot=robot)
             for name in planning.planners
         }
         head = _head(candidate, contenders, suite, judges)

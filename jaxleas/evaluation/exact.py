@@ -17,7 +17,7 @@ from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.labels import Judge, Verdict
+from jaxleas.labels import Judge, PlannerSettings, Verdict
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
@@ -186,22 +186,26 @@ def judge_exact(
     return results
 
 
-def exact_success(policy: Path, judge: Judge, suites: Sequence[Suite]) -> float:
+def exact_success(
+    policy: Path, planner: str, settings: PlannerSettings, suites: Sequence[Suite]
+) -> float:
     """Return the mean share of starts that reach their goal with contacts all the way.
 
     Args:
         policy: file of a steering policy.
-        judge: exact planner.
+        planner: name of the exact planner.
+        settings: settings of the planner.
         suites: suites to be walked.
     """
     found = load_policy(policy)
     env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
-    shares = [
-        cell.planned or 0.0
-        for suite in suites
-        for cell in judge_exact(env, walkers, suite, {judge.planner: judge})
-    ]
+    with Judge(planner, settings, robot=found.config.robot) as judge:
+        shares = [
+            cell.planned or 0.0
+            for suite in suites
+            for cell in judge_exact(env, walkers, suite, {planner: judge})
+        ]
     return sum(shares) / len(shares)
 
 

@@ -98,7 +98,8 @@ def measure_figures(
                     continue
                 say(f"figures {len(known) + 1}/{total}: {method} on {name}, 1 in {each}")
                 chosen = questions.settings.model_copy(update={"keep_every": each})
-                judge = Judge(figures.planner, chosen, workers=questions.workers)
+                robot = env.config.robot
+                judge = Judge(figures.planner, chosen, workers=questions.workers, robot=robot)
                 judged = ask(cell, walked, judge, env.config.limits.time_step)
                 row = step_row(cell, method, each, judged)
                 known[name, method, each] = row

@@ -4,8 +4,9 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import DEFAULT_PLANNER, PlannerName, find_planner
 from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
 from jaxleas.evaluation.examination import POLICY, load_candidate
 from jaxleas.evaluation.figure_file import FigureFile, Figures, read_figures, write_figures
@@ -14,7 +15,6 @@ from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.labels.judging import planner_workers
-from jaxleas.labels.settings import settings_from
 from jaxleas.types.errors import InputError
 
 METHODS = ("rb_kino", POLICY)
@@ -26,7 +26,7 @@ def figures(
     out: Path,
     policies: Sequence[str] | None = None,
     methods: Sequence[str] | None = None,
-    planner: Literal["mip", "sl1m", "sampling"] = "mip",
+    planner: PlannerName = DEFAULT_PLANNER,
     keep_every: Sequence[int] = KEEP_EVERY,
     starts: int = 30,
     course_starts: int = 10,
@@ -62,7 +62,7 @@ def figures(
     if not keep_every or min(keep_every) < 1 or course_starts < 1:
         raise InputError("--keep-every and --course-starts need numbers of 1 or more")
     suite = make_suite("thesis", starts, seed, held_out)
-    settings = settings_from(planner)
+    settings = settings_from(find_planner(planner, [planner]))
     candidate = load_candidate(run)
     further = parse_policies(policies or ())
     wanted = list(methods) if methods else [*METHODS, *further]

@@ -1,15 +1,14 @@
 """What cells and methods are called for people."""
 
+from jaxleas.contacts.registry import PLANNERS, title_of
 from jaxleas.guide.registry import BASELINES
 
 METHOD_TITLES = {
     **{name: each.title for name, each in BASELINES.items()},
     "rb_kino_rrt": "RB-Kino + RRT",
     "leas_p1": "LEAS-P1",
-    "leas_p2_sampling": "LEAS-P2 (sampling)",
-    "leas_p2_mip": "LEAS-P2 (MIP)",
-    "leas_p2_sl1m": "LEAS-P2 (SL1M)",
 }
+_REFINED = "leas_p2_"  # and the name of the planner that the policy was refined against
 
 
 def cell_title(name: str) -> str:
@@ -19,4 +18,16 @@ def cell_title(name: str) -> str:
 
 def method_title(name: str) -> str:
     """Return a method's name for people."""
+    if name in refined_names():
+        return f"LEAS-P2 ({title_of(name.removeprefix(_REFINED))})"
     return METHOD_TITLES.get(name, name)
+
+
+def refined_name(planner: str) -> str:
+    """Return the name of the method that was refined against a planner."""
+    return _REFINED + planner
+
+
+def refined_names() -> tuple[str, ...]:
+    """Return the names of the methods that were refined against built-in planners."""
+    return tuple(map(refined_name, PLANNERS))

@@ -5,6 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from jaxleas.contacts.planner import DEFAULT_ROBOT
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import DEFAULT_JUDGE, PlannerName, find_planner
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,7 +20,8 @@ def label(
     *,
     scene: Path,
     out: Path,
-    planner: str = "sampling",
+    planner: PlannerName = DEFAULT_JUDGE,
+    robot: str = DEFAULT_ROBOT,
     parameters: Sequence[str] | None = None,
     keep_every: int | None = None,
     samples: int | None = None,
@@ -38,9 +42,10 @@ def label(
         guides: guide path files, .npz.
         scene: that they walk on, .json; or an .stl or .obj mesh in metres, z up.
         out: folder of the verdict files; the same command goes on where it was interrupted.
-        planner: that judges: sampling, mip, sl1m, or MODULE:CLASS of your own.
-        parameters: of a planner of your own, as longest_step=0.3.
-        keep_every: one configuration in so many is planned for; sampling 5, mip and sl1m 14.
+        planner: planner that judges.
+        robot: robot that walks.
+        parameters: any settings of the planner, as longest_step=0.3.
+        keep_every: one configuration in so many is planned for; by default the planner's own.
         samples: sampling: leg configurations in the data base, 25000 by default.
         heuristic: sampling: by which candidates are tried, fixed_step by default.
         seed: sampling: of the data base, 0 by default.
@@ -60,30 +65,35 @@ def label(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     from jaxleas.labels.label import label_shards, plan_shards
-    from jaxleas.labels.settings import settings_from, settings_of
+    from jaxleas.labels.oracle import Oracle
+    from jaxleas.labels.settings import settings_of
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.workers.processes import require_count
 
-    settings = settings_from(
-        planner,
-        keep_every=keep_every,
-        samples=samples,
-        heuristic=heuristic,
-        seed=seed,
-        model=model,
-        candidates=candidates,
-        window=window,
-        time_limit=time_limit,
-        max_combinations=max_combinations,
-        weights=weights,
-        **settings_of(parameters or ()),
-    )
+    given = {
+        "keep_every": keep_every,
+        "samples": samples,
+        "heuristic": heuristic,
+        "seed": seed,
+        "model": model,
+        "candidates": candidates,
+        "window": window,
+        "time_limit": time_limit,
+        "max_combinations": max_combinations,
+        "weights": weights,
+    }
+    further = settings_of(parameters or ())
+    if twice := next((name for name in further if given.get(name) is not None), None):
+        option = twice.replace("_", "-")
+        raise InputError(f"--{option} and --parameters {twice} say the same: give one of them")
+    settings = settings_from(find_planner(planner, [planner]), **(given | further))
     if processes is not None:
         require_count(processes)
     begun = perf_counter()
     # Absolute: a worker elsewhere has another working folder.
     files = [Path(each).absolute() for each in guides]
-    shards = plan_shards(files, Path(scene).absolute(), planner, settings, Path(out).absolute())
+    oracle = Oracle(planner, settings, robot)
+    shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())

@@ -7,29 +7,29 @@ from typing import Self
 
 import numpy as np
 
-from jaxleas.labels.planners import judge_over
-from jaxleas.labels.settings import PlannerSettings, require_settings
-from jaxleas.labels.verdict import Verdict
+from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuides
+from jaxleas.contacts.planner_settings import require_settings
+from jaxleas.contacts.registry import PLANNERS, find_planner
+from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.labels.planners import ask
 from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.types import GuidePath, Verdict
 from jaxleas.types.errors import InputError
 from jaxleas.workers import Workers, workers_for
 
-PLANNER_MODULES = ("jaxleas.labels.planners",)
+PLANNER_MODULES = (
+    "jaxleas.labels.planners",
+    *(target.partition(":")[0] for target in PLANNERS.targets.values()),
+)
 """What workers that ask exact planners import before they are forked."""
-_MOST_A_TASK = {"sampling": 64, "mip": 8, "sl1m": 8}
-"""Guide paths, 8 for others: enough to work on abreast, few to do again when a worker dies."""
 _TASKS_EACH = 4  # for every worker, so that all end at about the same time
-_ABREAST = "sampling"  # gains from few, large tasks instead: it walks their paths abreast
 
 
 @dataclass(frozen=True)
 class _Task:
     planner: str
     settings: PlannerSettings
-    scenes: tuple[Scene, ...]
-    paths: tuple[GuidePath, ...]
-    scene_index: tuple[int, ...]
+    asked: AskedGuides
 
 
 def planner_workers(count: int) -> Workers:
@@ -48,8 +48,9 @@ class Judge:
             verdicts = judge.judge(scenes, paths, scene_index)
 
     Attributes:
-        planner: its name: sampling, mip, sl1m, or MODULE:CLASS.
-        settings: of the planner.
+        planner: name of the planner, or MODULE:CLASS of your own.
+        settings: settings of the planner.
+        robot: name of the robot whose contacts it plans.
     """
 
     def __init__(
@@ -58,20 +59,23 @@ class Judge:
         settings: PlannerSettings | None = None,
         processes: int = 1,
         workers: Workers | None = None,
+        robot: str = DEFAULT_ROBOT,
     ) -> None:
         """Choose planner and workers.
 
         Args:
-            planner: its name.
-            settings: of the planner; its defaults if None.
-            processes: working at the same time; 1 works in this process.
-            workers: instead of processes.
+            planner: name of a planner, or MODULE:CLASS of your own, which this call imports.
+            settings: settings of the planner; its defaults if None.
+            processes: number of processes at work; 1 works in this process.
+            workers: workers to use instead of processes.
+            robot: name of the robot.
 
         Raises:
             InputError: planner and settings do not fit, or there are no processes.
         """
-        self.planner = planner
-        self.settings = require_settings(planner, settings)
+        found = find_planner(planner, [planner])
+        self.planner, self.robot, self._grain = planner, robot, found.grain
+        self.settings = require_settings(found, settings)
         self._workers = workers or planner_workers(processes)
 
     def judge(
@@ -129,10 +133,8 @@ class Judge:
     def _groups(self, index: np.ndarray) -> list[np.ndarray]:
         """Return the paths of each task: those over one scene together."""
         order = np.argsort(index, kind="stable")
-        most, count = _MOST_A_TASK.get(self.planner, 8), self._workers.count
-        rounds = max(
-            -(-len(index) // (most * count)), 1 if self.planner == _ABREAST else _TASKS_EACH
-        )
+        grain, count = self._grain, self._workers.count
+        rounds = max(-(-len(index) // (grain.task * count)), 1 if grain.abreast else _TASKS_EACH)
         size = max(1, -(-len(index) // (rounds * count)))
         return [order[first : first + size] for first in range(0, len(order), size)]
 
@@ -144,17 +146,17 @@ class Judge:
         group: np.ndarray,
     ) -> _Task:
         used, local = np.unique(index[group], return_inverse=True)
-        return _Task(
-            self.planner,
-            self.settings,
+        asked = AskedGuides(
+            self.robot,
             tuple(scenes[each] for each in used),
             tuple(paths[each] for each in group),
             tuple(local.tolist()),
         )
+        return _Task(self.planner, self.settings, asked)
 
 
 def _judge_task(task: _Task) -> list[Verdict]:
-    return judge_over(task.planner, task.scenes, task.paths, task.scene_index, task.settings)
+    return ask(task.planner, task.asked, task.settings)
 
 
 def _require_fit(scenes: int, paths: int, index: np.ndarray) -> None:

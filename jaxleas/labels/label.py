@@ -4,40 +4,31 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from jaxleas.guide.files import read_guide_paths
+from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import judge
-from jaxleas.labels.settings import PlannerSettings, require_settings
-from jaxleas.labels.shards import Shard, provenance_of, write_shard
+from jaxleas.labels.shards import Asked, Shard, write_shard
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError
 from jaxleas.workers.processes import Workers
 
-GUIDES_A_SHARD = {"sampling": 64, "mip": 16, "sl1m": 16}
-"""16 for others. Enough to work on abreast, few enough to lose when interrupted."""
-
 
 def plan_shards(
-    guides: Sequence[Path],
-    scene: Path,
-    planner: str,
-    settings: PlannerSettings | None,
-    out: Path,
-    a_shard: int | None = None,
+    guides: Sequence[Path], scene: Path, oracle: Oracle, out: Path, a_shard: int | None = None
 ) -> list[Shard]:
     """Return the shards of guide path files: `out/<file's stem>/verdicts_<first>.json`.
 
     Args:
         guides: guide path files.
-        scene: that they walk on.
-        planner: its name.
-        settings: of the planner; its defaults if None.
+        scene: scene file that they walk on.
+        oracle: planner to ask.
         out: folder of the verdict files.
-        a_shard: guide paths in each.
+        a_shard: guide paths per shard; as many as suit the planner if None.
 
     Raises:
         InputError: a file cannot be used, two have the same name, or the settings do not fit.
     """
-    chosen = require_settings(planner, settings)
-    a_shard = a_shard or GUIDES_A_SHARD.get(planner, 16)
+    planner, settings = oracle.find()
+    size = a_shard or planner.grain.shard
     load_scene(scene)
     stems = [path.stem for path in guides]
     twice = sorted({stem for stem in stems if stems.count(stem) > 1})
@@ -46,11 +37,11 @@ def plan_shards(
     shards = []
     for path in guides:
         count = len(read_guide_paths(path).paths)
-        provenance = provenance_of(path, scene, planner, chosen)
-        for first in range(0, count, a_shard):
+        asked = Asked(path, scene, oracle.planner, settings, oracle.robot)
+        provenance = asked.provenance()
+        for first in range(0, count, size):
             name = Path(out) / path.stem / f"verdicts_{first:06d}.json"
-            last = min(first + a_shard, count)
-            shards.append(Shard(path, scene, planner, chosen, first, last, name, provenance))
+            shards.append(Shard(asked, first, min(first + size, count), name, provenance))
     return shards
 
 
@@ -61,9 +52,11 @@ def judge_shard(shard: Shard) -> int:
     file is there already was written by a worker that died before it could say so.
     """
     if not shard.is_done:
-        scene = load_scene(shard.scene)
-        paths = read_guide_paths(shard.guides).paths[shard.first : shard.last]
-        write_shard(shard, judge(shard.planner, scene, paths, shard.settings, shard.first))
+        asked = shard.asked
+        scene = load_scene(asked.scene)
+        paths = read_guide_paths(asked.guides).paths[shard.first : shard.last]
+        verdicts = judge(asked.planner, scene, paths, asked.settings, shard.first, asked.robot)
+        write_shard(shard, verdicts)
     return len(shard)
 
 

@@ -1,18 +1,55 @@
 """Verdict files: one for each few dozen guide paths, complete or absent, so that work restarts."""
 
 import hashlib
+import inspect
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from jaxleas.contacts.planner import DEFAULT_ROBOT
+from jaxleas.contacts.registry import PLANNERS, find_planner
+from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.files import read_json, require_version, write_json
-from jaxleas.labels.own_planner import OwnPlanner, source_of
-from jaxleas.labels.settings import PlannerSettings, seed_of
-from jaxleas.labels.verdict import Verdict, verdict_from_json, verdict_to_json
+from jaxleas.labels.verdict import verdict_from_json, verdict_to_json
+from jaxleas.robots import robot_digest
+from jaxleas.types import Verdict
 from jaxleas.types.errors import InputError
 
 VERSION = 2
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked about all guide paths of one file.
+
+    Attributes:
+        guides: guide path file.
+        scene: scene file.
+        planner: name of the planner.
+        settings: settings of the planner.
+        robot: name of the robot.
+    """
+
+    guides: Path
+    scene: Path
+    planner: str
+    settings: PlannerSettings
+    robot: str = DEFAULT_ROBOT
+
+    def provenance(self) -> dict[str, Any]:
+        """Return where verdicts come from, as written into their files."""
+        own = {} if self.planner in PLANNERS else {"source": _source(self.planner)}
+        return {
+            "planner": self.planner,
+            **own,
+            "jaxleas": version("jaxleas"),
+            "robot": {"name": self.robot, "sha256": robot_digest(self.robot)},
+            "parameters": self.settings.model_dump(mode="json"),
+            "seed": getattr(self.settings, "seed", None),
+            "scene": {"file": self.scene.name, "sha256": _sha256(self.scene)},
+            "guides": {"file": self.guides.name, "sha256": _sha256(self.guides)},
+        }
 
 
 @dataclass(frozen=True)
@@ -20,20 +57,14 @@ class Shard:
     """A run of guide paths of one file, judged together.
 
     Attributes:
-        guides: the guide path file.
-        scene: the scene file.
-        planner: its name.
-        settings: of the planner.
+        asked: what is asked about them.
         first: number of the first guide path.
         last: number after the last guide path.
-        out: the verdict file.
-        provenance: where the verdicts come from, as written into the file.
+        out: verdict file.
+        provenance: where the verdicts come from.
     """
 
-    guides: Path
-    scene: Path
-    planner: str
-    settings: PlannerSettings
+    asked: Asked
     first: int
     last: int
     out: Path
@@ -56,28 +87,14 @@ class Shard:
         if isinstance(content, dict):
             require_version(content, VERSION, self.out)
         found = content.get("provenance") if isinstance(content, dict) else None
+        if isinstance(found, dict) and self.asked.robot == DEFAULT_ROBOT:
+            found = {"robot": self.provenance["robot"], **found}  # older files do not say: Talos
         if found != self.provenance:
             raise InputError(
                 f"{self.out} holds verdicts made {_difference(found, self.provenance)}; give "
                 "another --out, or remove that folder"
             )
         return True
-
-
-def provenance_of(
-    guides: Path, scene: Path, planner: str, settings: PlannerSettings
-) -> dict[str, Any]:
-    """Return where verdicts come from: planner, version, parameters, terrain, seed, guide paths."""
-    own = {"source": source_of(type(settings))} if isinstance(settings, OwnPlanner) else {}
-    return {
-        "planner": planner,
-        **own,
-        "jaxleas": version("jaxleas"),
-        "parameters": settings.model_dump(mode="json"),
-        "seed": seed_of(settings),
-        "scene": {"file": scene.name, "sha256": _sha256(scene)},
-        "guides": {"file": guides.name, "sha256": _sha256(guides)},
-    }
 
 
 def write_shard(shard: Shard, verdicts: list[Verdict]) -> None:
@@ -117,6 +134,12 @@ def _parts(path: Path, content: Any) -> tuple[dict[str, Any], list[Any]]:
     if not isinstance(provenance, dict) or not isinstance(verdicts, list):
         raise InputError(f"{path} is no verdict file: it needs an object and a list of verdicts")
     return provenance, verdicts
+
+
+def _source(planner: str) -> dict[str, Any]:
+    """Return name and SHA-256 of the file that a planner of the user's own is written in."""
+    file = Path(inspect.getfile(find_planner(planner, [planner]).source))
+    return {"file": file.name, "sha256": _sha256(file)}
 
 
 def _sha256(path: Path) -> str:

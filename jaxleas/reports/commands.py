@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import PLANNERS, PlannerName, find_planner
 from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
 from jaxleas.evaluation.contenders import make_contenders, parse_policies
 from jaxleas.evaluation.examination import (
@@ -18,7 +20,7 @@ from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.labels.settings import SETTINGS, kind_of, require_settings, settings_from
+from jaxleas.labels import PlannerSettings
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
@@ -33,7 +35,7 @@ def evaluate(
     baseline: bool = True,
     seed: int = 0,
     held_out: bool = False,
-    planners: Sequence[str] | None = None,
+    planners: Sequence[PlannerName] | None = None,
     methods: Sequence[str] | None = None,
     policies: Sequence[str] | None = None,
     time_limit: float | None = None,
@@ -60,8 +62,7 @@ def evaluate(
         baseline: judge RB-Lin and RB-Kino beside it.
         seed: of scenes and starts; training never sees any of them.
         held_out: judge on terrain to choose and tune by, not on that of evaluation.
-        planners: sampling, mip, sl1m, MODULE:CLASS of your own, or none; the first three for the
-            suite thesis.
+        planners: exact planners that judge, or none; for the suite thesis all that are built in.
         methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
             policies; by default all.
         policies: further ones, each as name=path.
@@ -118,7 +119,7 @@ def evaluate(
             plan,
             Planning(
                 names,
-                {name: settings_from(name, **_given(name, given)) for name in names},
+                {name: _settings(name, given) for name in names},
                 processes or os.cpu_count() or 1,
             ),
             file=file,
@@ -149,17 +150,19 @@ def _require_evaluation(file: Path) -> None:
 def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
     names = _words(given)
     if names is None:
-        return tuple(SETTINGS) if suite == "thesis" else ()
+        return tuple(PLANNERS) if suite == "thesis" else ()
     if names == ["none"]:
         return ()
     for name in names:
-        require_settings(name, None)
+        find_planner(name, [name])
     return tuple(dict.fromkeys(names))
 
 
-def _given(planner: str, given: dict[str, Any]) -> dict[str, Any]:
-    """Return those of the settings that the planner has."""
-    return {name: each for name, each in given.items() if name in kind_of(planner).model_fields}
+def _settings(planner: str, given: dict[str, Any]) -> PlannerSettings:
+    """Return a planner's settings with what is given, as far as the planner has such settings."""
+    found = find_planner(planner, [planner])
+    known = found.settings.model_fields
+    return settings_from(found, **{name: each for name, each in given.items() if name in known})
 
 
 def _words(given: Sequence[str] | None) -> list[str] | None:

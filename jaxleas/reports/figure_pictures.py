@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jaxleas.contacts.registry import title_of
 from jaxleas.evaluation.figure_file import Figures, StepRow
 from jaxleas.evaluation.figures import BASIC, COURSE
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.evaluation.titles import cell_title, method_title, refined_names
 from jaxleas.reports.gallery import Picture
 from jaxleas.reports.published import thesis
-from jaxleas.reports.side_by_side import PLANNER_TITLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,9 +23,7 @@ COLOURS = {
     "rb_kino": "#2e9e4f",
     "rb_kino_rrt": "#b8860b",
     "leas_p1": "#1f5fd0",
-    "leas_p2_sampling": "#c33d2e",
-    "leas_p2_mip": "#c33d2e",
-    "leas_p2_sl1m": "#c33d2e",
+    **dict.fromkeys(refined_names(), "#c33d2e"),
 }
 OTHER = "#8a3fb5"
 
@@ -38,7 +36,7 @@ def draw_figures(figures: Figures) -> list[Picture]:
     basic = [row for row in figures.steps if row.cell in BASIC]
     course = [row for row in figures.steps if row.cell == COURSE]
     kept = figures.settings["keep_every"]
-    planner = PLANNER_TITLES.get(figures.planner, figures.planner)
+    planner = title_of(figures.planner)
     dots = f"Large dots: one configuration in {kept}, as trained for."
     seed = f"{'held-out' if figures.held_out else 'evaluation'} seed {figures.seed}"
     if basic:

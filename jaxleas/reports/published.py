@@ -37,6 +37,12 @@ class Published(Strict):
     source: str
     tables: tuple[PublishedTable, ...]
     figures: dict[str, str]
+    learning: dict[str, str]
+    """Which figure shows learning with a planner, by the planner's name."""
+
+    def learning_of(self, planner: str) -> str:
+        """Return what is read off the figure of learning with a planner; empty without one."""
+        return self.figures.get(self.learning.get(planner, ""), "")
 
 
 @cache
@@ -59,7 +65,13 @@ def published_value(
     return None
 
 
+def printed_planners() -> tuple[str, ...]:
+    """Return the names of the planners with which the thesis prints tables."""
+    return tuple(dict.fromkeys(each.planner for each in thesis().tables if each.planner))
+
+
 def published(result: CellResult) -> float | None:
-    """Return the thesis's success with the sampling-based planner (tables 4.1-4.3), if any."""
+    """Return the thesis's success with a planner that it prints (tables 4.1-4.3), if any."""
     key = result.name, result.yaw, result.speed, result.method
-    return published_value("planned", "sampling", *key)
+    found = (published_value("planned", planner, *key) for planner in printed_planners())
+    return next((value for value in found if value is not None), None)

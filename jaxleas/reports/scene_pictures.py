@@ -64,7 +64,7 @@ def draw_side_by_side(
             walked = walks(grounds, starts, suite.steps_of(cell))
             judged[name] = Judged(walked, (None,) * STARTS)
             if planners:
-                judge = Judge(planners[0])
+                judge = Judge(planners[0], robot=env.config.robot)
                 judged[name] = ask(cell, walked, judge, env.config.limits.time_step)
         planner = planners[0] if planners else None
         figure = _scene(env, grounds, cell, judged, planner)

@@ -1,13 +1,13 @@
 """Methods side by side: one row a cell and method, the exact planners in columns."""
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 
+from jaxleas.contacts.registry import measures_of, title_of
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.titles import cell_title, method_title
 from jaxleas.reports.published import published
 from jaxleas.reports.table import align, percent
-
-PLANNER_TITLES = {"sampling": "sampling", "mip": "MIP", "sl1m": "SL1M"}
 
 
 def has_plans(evaluation: Evaluation) -> bool:
@@ -20,12 +20,22 @@ def planners_of(evaluation: Evaluation) -> list[str]:
     return list(dict.fromkeys(cell.planner for cell in evaluation.cells if cell.planner))
 
 
+def robust_of(evaluation: Evaluation) -> frozenset[str]:
+    """Return the names of the planners that report the robustness of postures."""
+    found = {cell.planner for cell in evaluation.cells if cell.robustness is not None}
+    return frozenset(
+        each
+        for each in planners_of(evaluation)
+        if each in found or "robustness" in measures_of(each)
+    )
+
+
 def headings(evaluation: Evaluation) -> tuple[str, ...]:
     """Return the titles of the columns."""
     columns = ["cell", "heading", "speed", "method", "valid", "reached"]
     for planner in planners_of(evaluation):
-        title = PLANNER_TITLES.get(planner, planner)
-        columns += [title, "95 %", *(["robustness"] if planner == "sampling" else []), "step"]
+        robustness = ["robustness"] if planner in robust_of(evaluation) else []
+        columns += [title_of(planner), "95 %", *robustness, "step"]
     return (*columns, "thesis")
 
 
@@ -35,11 +45,13 @@ def rows(evaluation: Evaluation) -> list[tuple[str, ...]]:
     for cell in evaluation.cells:
         key = (cell.name, cell.yaw, cell.yaw_spread, cell.speed, cell.method)
         groups.setdefault(key, {})[cell.planner] = cell
-    planners = planners_of(evaluation)
-    return [_row(by_planner, planners) for by_planner in groups.values()]
+    planners, robust = planners_of(evaluation), robust_of(evaluation)
+    return [_row(by_planner, planners, robust) for by_planner in groups.values()]
 
 
-def _row(by_planner: dict[str | None, CellResult], planners: Sequence[str]) -> tuple[str, ...]:
+def _row(
+    by_planner: dict[str | None, CellResult], planners: Sequence[str], robust: AbstractSet[str]
+) -> tuple[str, ...]:
     one = next(iter(by_planner.values()))
     heading = f"{one.yaw:.0f}°"
     if one.yaw_spread:
@@ -47,19 +59,18 @@ def _row(by_planner: dict[str | None, CellResult], planners: Sequence[str]) -> t
     texts = [cell_title(one.name), heading, f"{one.speed:.2f}", method_title(one.method)]
     texts += [percent(1.0 - one.invalid), percent(one.reached)]
     for planner in planners:
-        texts += _plans(by_planner.get(planner), planner)
-    quoted = published(by_planner.get("sampling", one))
-    return (*texts, percent(quoted, 0))
+        texts += _plans(by_planner.get(planner), planner in robust)
+    return (*texts, percent(published(one), 0))
 
 
-def _plans(cell: CellResult | None, planner: str) -> list[str]:
+def _plans(cell: CellResult | None, is_robust: bool) -> list[str]:
     if cell is None:
-        return ["-"] * (4 if planner == "sampling" else 3)
+        return ["-"] * (4 if is_robust else 3)
     stable = "-" if cell.robustness is None else f"{cell.robustness:.1f}"
     return [
         percent(cell.planned),
         f"{100.0 * cell.low:.0f}-{100.0 * cell.high:.0f}",
-        *([stable] if planner == "sampling" else []),
+        *([stable] if is_robust else []),
         "-" if cell.mean_step is None else f"{100.0 * cell.mean_step:.1f} cm",
     ]
 

@@ -1,6 +1,7 @@
 """The robots: trunk, limbs, effectors, ranges of motion, mass; one file a robot."""
 
 from jaxleas.robots.catalogue import load_robot, robot_names
+from jaxleas.robots.digest import robot_digest
 from jaxleas.robots.effector import Effector
 from jaxleas.robots.files import read_robot, write_robot
 from jaxleas.robots.robot import Limb, Robot
@@ -13,6 +14,7 @@ __all__ = [
     "load_robot",
     "load_talos",
     "read_robot",
+    "robot_digest",
     "robot_names",
     "write_robot",
 ]

@@ -16,6 +16,9 @@ FOOT_OF_LIMB = {"left": "LF", "right": "RF"}
 """Names of a biped's feet where its file gives none; a foot of another limb has the limb's name."""
 
 
+LIMB_OF_FOOT = {foot: limb for limb, foot in FOOT_OF_LIMB.items()}
+
+
 @dataclass(frozen=True, eq=False)
 class Effector:
     """The part of a limb that touches.

@@ -116,6 +116,11 @@ class Robot:
         return tuple(index for index, each in enumerate(self.effectors) if each.stands)
 
     @property
+    def foot_names(self) -> tuple[str, ...]:
+        """Names of the effectors that carry a walking robot, in the order of the limbs."""
+        return tuple(self.effectors[index].name for index in self.feet)
+
+    @property
     def legs(self) -> "tuple[Limb, ...]":
         """The limbs that carry a walking robot."""
         return tuple(self.limbs[index] for index in self.feet)

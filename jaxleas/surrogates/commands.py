@@ -40,6 +40,7 @@ def fit(
 
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
+    from jaxleas.robots import robot_digest
     from jaxleas.surrogates.fit import fit as fit_surrogate
     from jaxleas.surrogates.label_files import read_labels
     from jaxleas.surrogates.surrogate import Identity
@@ -61,7 +62,12 @@ def fit(
     if found.robot != config.robot:
         raise InputError(
             f"{labels[0]} holds verdicts on {found.robot}, but the policy is for {config.robot}:"
-            " label guide paths of that robot"
+            f" label guide paths with --robot {config.robot}"
+        )
+    if found.robot_digest not in (None, robot_digest(config.robot)):
+        raise InputError(
+            f"{labels[0]} holds verdicts on {config.robot} as it was before its file changed: label"
+            " the guide paths again"
         )
     identity = Identity.of(found.planner, found.parameters, config)
 

@@ -20,6 +20,7 @@ from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64
+DEFAULT_ROBOT = "talos"
 VERSION = 2  # of verdict files
 
 
@@ -30,7 +31,8 @@ class Labels:
     Attributes:
         planner: that judged.
         parameters: it was given.
-        robot: whose contacts it planned.
+        robot: name of the robot whose contacts it planned.
+        robot_digest: SHA-256 of that robot's file; None where the labels do not say.
         walks: with verdicts.
         atlas: their terrains.
         passed_over: guide paths without a verdict: the planner's time limit came first.
@@ -39,6 +41,7 @@ class Labels:
     planner: str
     parameters: dict[str, Any]
     robot: str
+    robot_digest: str | None
     walks: LabelledWalks
     atlas: Atlas
     passed_over: int
@@ -70,7 +73,7 @@ def read_labels(
     contents = [_read(path) for path in files]
     first = contents[0]["provenance"]
     for path, content in zip(files, contents, strict=True):
-        if _whose(content["provenance"]) != _whose(first):
+        if not _is_same(content["provenance"], first):
             raise InputError(
                 f"{path} holds verdicts of another planner or other parameters, or on another"
                 f" robot, than {files[0]}: one surrogate stands in for one planner"
@@ -105,7 +108,8 @@ def read_labels(
     return Labels(
         planner=first["planner"],
         parameters=first["parameters"],
-        robot=_robot(first),
+        robot=_robot(first)[0],
+        robot_digest=next(filter(None, (_robot(each["provenance"])[1] for each in contents)), None),
         walks=join(parts).trimmed(),
         atlas=make_atlas(maps),
         passed_over=passed_over,
@@ -123,8 +127,14 @@ class _Parameters(BaseModel):
     keep_every: Annotated[int, Field(ge=1, le=100_000)]
 
 
+class _Robot(BaseModel):
+    name: str
+    sha256: str
+
+
 class _Provenance(BaseModel):
     planner: str
+    robot: _Robot | str = DEFAULT_ROBOT
     parameters: _Parameters
     scene: _File
     guides: _File
@@ -141,14 +151,22 @@ class _VerdictFile(BaseModel):
     verdicts: list[_Verdict]
 
 
-def _whose(provenance: dict[str, Any]) -> tuple[Any, ...]:
-    """Return what all verdicts that a surrogate learns from must have in common."""
-    return provenance["planner"], provenance["parameters"], _robot(provenance)
+def _is_same(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Whether verdicts have in common what all must have that a surrogate learns from."""
+    (robot, digest), (name, sha256) = _robot(one), _robot(other)
+    alike = robot == name and (digest == sha256 or None in (digest, sha256))
+    return alike and all(one[key] == other[key] for key in ("planner", "parameters"))
 
 
-def _robot(provenance: dict[str, Any]) -> str:
-    """Return whose contacts were planned: Talos's, where a file does not say."""
-    return str(provenance.get("robot", "talos"))
+def _robot(provenance: dict[str, Any]) -> tuple[str, str | None]:
+    """Return name and file digest of the robot whose contacts were planned.
+
+    Files from before robots were recorded are of Talos, and hold no digest.
+    """
+    robot = provenance.get("robot", DEFAULT_ROBOT)
+    if isinstance(robot, dict):
+        return robot["name"], robot["sha256"]
+    return robot, None
 
 
 def _read(path: Path) -> dict[str, Any]:

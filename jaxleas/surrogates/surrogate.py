@@ -23,7 +23,7 @@ class Identity(Strict):
     """Whose stand-in a surrogate is, and for which robot and observation."""
 
     planner: str
-    """sampling, mip, sl1m, or MODULE:CLASS of the user's own"""
+    """name of the planner, or MODULE:CLASS of the user's own"""
     parameters: dict[str, JsonValue]
     """of the planner"""
     robot: str

@@ -9,9 +9,9 @@ from typing import Any
 from jaxleas.configuration.former import present_name
 from jaxleas.configuration.loading import load_config
 from jaxleas.configuration.values import require_field, require_value, with_values
+from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.registry import TASKS
 from jaxleas.evaluation.suites import SUITED_TASKS, make_suite
-from jaxleas.labels.settings import settings_from
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
 from jaxleas.training.config import RunConfig
 from jaxleas.training.ppo_params import swept_fields

@@ -3,10 +3,11 @@
 import json
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, JsonValue, model_validator
+from pydantic import AfterValidator, Field, JsonValue, model_validator
 
 from jaxleas.configuration.bounds import Count, Seed
 from jaxleas.configuration.strict import Strict
+from jaxleas.contacts.registry import DEFAULT_JUDGE, require_built_in
 
 Scalar = bool | int | float | str
 
@@ -95,7 +96,7 @@ class Exact(Strict):
     """Success under an exact contact planner, mean over cells, on held-out suites."""
 
     measure: Literal["exact"]
-    planner: Literal["sampling", "mip", "sl1m"] = "sampling"
+    planner: Annotated[str, AfterValidator(require_built_in)] = DEFAULT_JUDGE
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
     """Of the planner; what is not named has the planner's own default."""
     suites: Annotated[tuple[str, ...], Field(min_length=1)] = ("transitions",)

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.evaluation.exact import exact_success
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.labels import Judge
-from jaxleas.labels.settings import settings_from
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
 
@@ -74,6 +73,5 @@ def never(objective: Objective, value: float, total: float) -> bool:
 def _exact_success(run: Path, objective: Exact) -> float:
     """Return the mean share of starts that reach their goal with contacts all the way."""
     settings: Any = settings_from(objective.planner, **objective.parameters)
-    with Judge(objective.planner, settings) as judge:
-        suites = [make_suite(name, objective.starts, held_out=True) for name in objective.suites]
-        return exact_success(run / POLICY_FILE, judge, suites)
+    suites = [make_suite(name, objective.starts, held_out=True) for name in objective.suites]
+    return exact_success(run / POLICY_FILE, objective.planner, settings, suites)

@@ -12,6 +12,7 @@ from jaxleas.types.paths import GuidePath, cut_walks
 from jaxleas.types.poses import Pose, RootPose
 from jaxleas.types.queries import Query
 from jaxleas.types.stances import Contact, Stance, SupportPhase
+from jaxleas.types.verdict import Verdict
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
@@ -28,6 +29,7 @@ __all__ = [
     "RootPose",
     "Stance",
     "SupportPhase",
+    "Verdict",
     "cut_walks",
     "is_ground",
 ]

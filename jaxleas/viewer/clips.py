@@ -11,6 +11,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.guide.files import read_guide_paths
 from jaxleas.guide.standing import Pose
+from jaxleas.robots.effector import LIMB_OF_FOOT
 from jaxleas.types import GuidePath, InputError
 
 SECONDS_A_PHASE = 1.0  # a contact plan has no times of its own
@@ -21,7 +22,7 @@ class Foothold:
     """A foot on the ground.
 
     Attributes:
-        limb: "left" or "right".
+        limb: name of the limb, "left" or "right" of bipeds.
         position: of the middle of the sole [m].
         yaw: heading [rad].
         time: from which on it stands there [s].
@@ -47,6 +48,7 @@ class Clip:
         valid: whether each configuration is.
         footholds: in order of time; none for a guide path.
         half_size: of a sole [m].
+        robot: name of the robot that moves; None where the file does not say.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Clip:
     valid: Bool[np.ndarray, " T"]
     footholds: tuple[Foothold, ...] = ()
     half_size: tuple[float, float] = (0.1, 0.06)
+    robot: str | None = None
 
     @property
     def duration(self) -> float:
@@ -120,7 +123,7 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
     footholds = []
     for index, (foot, point, yaw, time) in enumerate(landings):
         leaves = [later[3] for later in landings[index + 1 :] if later[0] == foot]
-        limb = {"LF": "left", "RF": "right"}[foot]
+        limb = LIMB_OF_FOOT.get(foot, foot)
         footholds.append(Foothold(limb, np.asarray(point), yaw, time, min(leaves, default=np.inf)))
     phases = [phase for phase in problem.phases[: max(len(made), 1)] if phase.root is not None]
     known = len(phases) == max(len(made), 1)
@@ -136,4 +139,5 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
         np.ones(count, bool),
         tuple(footholds),
         problem.foot_half_size,
+        problem.robot,
     )

@@ -176,10 +176,9 @@ def _announce(server: "ViserServer", browser: bool) -> None:
 
 
 def _play_back(server: "ViserServer", clips: "list[Clip]", playing: bool) -> "Player":
-    from jaxleas.robots import load_robot
-    from jaxleas.viewer.playback import Playback
+    from jaxleas.viewer.playback import Playback, figure_robot
 
-    playback = Playback(server, load_robot("talos"), clips)
+    playback = Playback(server, figure_robot(clips), clips)
     if playing:
         playback.play()
     return playback

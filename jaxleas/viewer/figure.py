@@ -22,6 +22,7 @@ ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (15
 """Of the robots side by side, one after another."""
 INVALID: Colour = (205, 40, 50)
 LIMBS: dict[str, Colour] = {"left": (200, 60, 60), "right": (220, 175, 40)}
+OTHER_LIMB: Colour = (120, 120, 120)
 GOAL: Colour = (30, 150, 60)
 REACH_OPACITY = 0.22
 SEEN_LIFT = 0.02  # of what the policy sees above the ground, which would hide half of each dot [m]

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jaxleas.robots import Robot
+from jaxleas.robots import Robot, load_robot, load_talos
+from jaxleas.types import InputError
 from jaxleas.viewer.clips import Clip, Foothold
-from jaxleas.viewer.figure import INVALID, LIMBS, Figure, mesh_of_hull
+from jaxleas.viewer.figure import INVALID, LIMBS, OTHER_LIMB, Figure, mesh_of_hull
 from jaxleas.viewer.ground import Colour
 from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.ribbon import draw_path
@@ -21,6 +22,21 @@ THICKNESS = 0.015  # of a sole [m]
 LIFT = np.array([0.0, 0.0, 0.5 * THICKNESS])
 LIFTED = 0.25
 """Opacity of a foothold that the foot has left."""
+
+
+def figure_robot(clips: Sequence[Clip]) -> Robot:
+    """Return the robot to draw: that of the clips, or Talos where it is not known.
+
+    Raises:
+        InputError: the clips are of different robots.
+    """
+    names = list(dict.fromkeys(clip.robot for clip in clips if clip.robot is not None))
+    if len(names) > 1:
+        raise InputError(f"these are of different robots, {' and '.join(names)}: show them apart")
+    try:
+        return load_robot(names[0]) if names else load_talos()
+    except InputError:  # a contact problem with polytopes of its own may be of any robot
+        return load_talos()
 
 
 class Playback:
@@ -108,7 +124,7 @@ class Playback:
     ) -> "tuple[GlbHandle, GlbHandle]":
         """Add a sole twice, both hidden: as it stands, and as it has been left."""
         sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
-        colours = shade(sole, np.array(LIMBS[foothold.limb], float))
+        colours = shade(sole, np.array(LIMBS.get(foothold.limb, OTHER_LIMB), float))
         nodes = (
             add_painted(self._server, f"{name}/standing", sole, colours),
             add_painted(self._server, f"{name}/left", sole, colours, LIFTED),

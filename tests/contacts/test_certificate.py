@@ -5,7 +5,7 @@ import pytest
 
 from jaxleas.contacts.certificate import TOLERANCE, certify
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.planners import plan_mip
+from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.types.errors import InputError
 from tests.contacts.worlds import content, problem, rectangle, stones
 

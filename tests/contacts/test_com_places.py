@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from jaxleas.contacts import com_places
-from jaxleas.contacts.com_places import FITS, place_coms
-from jaxleas.contacts.steps import make_steps, rotation
+from jaxleas.contacts.programs import com_places
+from jaxleas.contacts.programs.com_places import FITS, place_coms
+from jaxleas.contacts.programs.steps import make_steps, rotation
 from tests.contacts.worlds import problem, random_world
 
 

@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from jaxleas.contacts.combinations import Combinations
-from jaxleas.contacts.placement import place
-from jaxleas.contacts.sl1m import DECIDED, attempt
-from jaxleas.contacts.steps import make_steps
+from jaxleas.contacts.programs.attempt import DECIDED, attempt
+from jaxleas.contacts.programs.combinations import Combinations
+from jaxleas.contacts.programs.placement import place
+from jaxleas.contacts.programs.steps import make_steps
 from tests.contacts.worlds import (
     problem,
     random_world,

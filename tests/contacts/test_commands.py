@@ -9,8 +9,8 @@ from jaxleas import cli
 from jaxleas.contacts.commands import NotCertifiedError
 from jaxleas.contacts.pictures import draw_plan, failing_candidates
 from jaxleas.contacts.plan import read_plan
-from jaxleas.contacts.planners import plan_mip
 from jaxleas.contacts.problem_file import read_problem
+from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.files import write_json, write_npz
 from jaxleas.types.errors import InputError
 from tests.contacts.test_from_guide import straight
@@ -83,7 +83,7 @@ def test_contacts_from_guide_to_plan(folder, capsys) -> None:
         ("plan good.json --out plan.txt", "written as .json"),
         ("plan good.json --out plan.json --picture p.gif", "pictures are .png"),
         ("plan good.json --out plan.json --time-limit 0", "positive number of seconds"),
-        ("plan good.json --out plan.json --planner sl1m --cost linear", "for the mip planner"),
+        ("plan good.json --out plan.json --planner sl1m --cost linear", "for the planner mip"),
         ("contacts guide.npz --scene good.json --out plan.json --every 0", "every 0"),
         ("contacts guide.npz --scene scene.json --out plan.json --query 3", "no path 3"),
         ("check good.json good.json", "is not a contact plan"),

@@ -3,8 +3,8 @@ import pytest
 
 from jaxleas.contacts.from_guide import nearest_below, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
-from jaxleas.contacts.planners import plan_mip
 from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.files import write_npz
 from jaxleas.terrain.scene import Scene

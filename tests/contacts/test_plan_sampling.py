@@ -236,7 +236,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
         ("plan missing.json --planner sampling --out p.json", "missing.json does not exist"),
         ("contacts guide.npz --scene scene.json --cost linear", "--cost is for mip and sl1m"),
         ("contacts guide.npz --scene scene.json --problem a.json", "--problem is for mip"),
-        ("contacts guide.npz --scene scene.json --robot spot", "knows the legs of talos only"),
+        ("contacts guide.npz --scene scene.json --robot spot", "there is no robot .spot."),
         ("contacts guide.npz --scene scene.json --every 0", "every 0 must be at least 1"),
         ("contacts guide.npz --scene scene.json --time-limit -1", "positive number of seconds"),
         ("contacts guide.npz --scene scene.json --query 2", "no path 2"),
@@ -254,6 +254,6 @@ def test_check_asks_for_what_the_plan_needs(folder, climb) -> None:
     write_plan("plan.json", climb)
     with pytest.raises(InputError, match=r"--guide GUIDE\.npz --scene"):
         run("check plan.json scene.json --guide guide.npz")
-    write_plan("plan.json", climb.but(planner="mip"))
+    write_plan("plan.json", climb.but(planner="mip", postures=None))
     with pytest.raises(InputError, match="say which problem"):
         cli.run(["check", "plan.json"])

@@ -8,9 +8,10 @@ import pytest
 from scipy.optimize import linprog
 
 from jaxleas.contacts.certificate import certify
-from jaxleas.contacts.explanation import explain, find_blame
-from jaxleas.contacts.planners import PLANNERS, plan_mip, plan_sl1m
-from jaxleas.contacts.prefix import last_feasible_phase
+from jaxleas.contacts.programs.explanation import explain, find_blame
+from jaxleas.contacts.programs.mip import plan_mip
+from jaxleas.contacts.programs.prefix import last_feasible_phase
+from jaxleas.contacts.programs.sl1m import plan_sl1m
 from jaxleas.types.errors import InputError
 from tests.contacts.worlds import (
     boxes,
@@ -21,6 +22,8 @@ from tests.contacts.worlds import (
     rectangle,
     stones,
 )
+
+PROGRAMS = {"mip": plan_mip, "sl1m": plan_sl1m}
 
 MODELS = ["two_com", "feet"]
 
@@ -135,26 +138,26 @@ def test_the_centre_of_mass_decides_some() -> None:
     assert differ >= 1
 
 
-@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("planner", PROGRAMS)
 @pytest.mark.parametrize("model", MODELS)
 def test_plans_keep_their_problem(planner: str, model: str) -> None:
     asked = problem(stones(0.1, rise=0.1, model=model))
-    plan = PLANNERS[planner](asked)
+    plan = PROGRAMS[planner](asked)
     assert plan.status == "feasible"
     assert plan.last_feasible_phase == len(asked) - 1
     assert certify(asked, plan).certified
     assert (plan.com is None) == (model == "feet")
 
 
-@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("planner", PROGRAMS)
 @pytest.mark.parametrize("model", MODELS)
 def test_verdicts_do_not_depend_on_where_and_whither(planner: str, model: str) -> None:
     for seed in range(4):
         described = random_world(seed, model)
-        here = PLANNERS[planner](problem(described), diagnose=False)
+        here = PROGRAMS[planner](problem(described), diagnose=False)
         for angle, shift in ((0.7, [3.0, -2.0, 1.0]), (-2.5, [0.0, 40.0, 0.0])):
             there = moved(described, angle, np.array(shift))
-            assert PLANNERS[planner](problem(there), diagnose=False).status == here.status
+            assert PROGRAMS[planner](problem(there), diagnose=False).status == here.status
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -181,7 +184,7 @@ def test_the_least_gap_that_cannot_be_stepped_over(model: str) -> None:
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("planner", PROGRAMS)
 def test_the_last_step_that_can_be_made(planner: str, model: str) -> None:
     for good in range(4):
         surfaces = {f"s{k}": rectangle(0.15 * k - 0.05, 0.15 * k + 0.25, -0.3, 0.3) for k in (0, 1)}
@@ -190,7 +193,7 @@ def test_the_last_step_that_can_be_made(planner: str, model: str) -> None:
         names = [[f"s{k}"] for k in range(4)]
         names[good] = ["far"]
         asked = problem(content(surfaces, names, model))
-        plan = PLANNERS[planner](asked)
+        plan = PROGRAMS[planner](asked)
         assert plan.status == "infeasible"
         assert plan.last_feasible_phase == good - 1
         assert not plan.feasible
@@ -292,11 +295,11 @@ def test_a_cost_needs_a_guide() -> None:
         plan_mip(problem(stones(0.1)), cost="linear")
 
 
-@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("planner", PROGRAMS)
 def test_a_time_limit_is_no_verdict(planner: str) -> None:
     begin = time.perf_counter()
     for described in (stones(0.1), stones(0.1, rise=0.1), random_world(1, "feet")):
-        plan = PLANNERS[planner](problem(described), time_limit=1e-6)
+        plan = PROGRAMS[planner](problem(described), time_limit=1e-6)
         assert plan.status == "time_limit"
         assert not plan.feasible
         assert "not decided within the time limit" in plan.reason
@@ -304,8 +307,8 @@ def test_a_time_limit_is_no_verdict(planner: str) -> None:
     assert time.perf_counter() - begin < 20.0
 
 
-@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("planner", PROGRAMS)
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan")])
 def test_a_time_limit_must_be_positive(planner: str, limit: float) -> None:
     with pytest.raises(InputError, match="positive number of seconds"):
-        PLANNERS[planner](problem(stones(0.1)), time_limit=limit)
+        PROGRAMS[planner](problem(stones(0.1)), time_limit=limit)

@@ -101,9 +101,10 @@ def test_a_problem_survives_its_file(tmp_path) -> None:
     assert [(p.foot, p.yaw, p.candidates) for p in after.phases] == [
         (p.foot, p.yaw, p.candidates) for p in before.phases
     ]
-    for foot in ("LF", "RF"):
-        for group in ("foot", "com"):
-            one, two = getattr(before.polytopes, group)[foot], getattr(after.polytopes, group)[foot]
+    assert list(before.polytopes.relative) == ["RF_in_LF", "LF_in_RF"]
+    for group in ("relative", "com"):
+        for name, one in getattr(before.polytopes, group).items():
+            two = getattr(after.polytopes, group)[name]
             np.testing.assert_allclose(one.normals, two.normals, atol=1e-12)
             np.testing.assert_allclose(one.offsets, two.offsets, atol=1e-12)
 

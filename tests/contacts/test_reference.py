@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from jaxleas.contacts.certificate import certify
-from jaxleas.contacts.planners import plan_mip, plan_sl1m
+from jaxleas.contacts.programs.mip import plan_mip
+from jaxleas.contacts.programs.sl1m import plan_sl1m
 from tests.contacts.worlds import reference_entries, reference_problem
 
 MODELS = ["two_com", "feet"]

@@ -5,8 +5,8 @@ import pytest
 
 from benchmarks.contacts.l1 import START, scenario_a, scenario_a2, scenario_b
 from jaxleas.contacts.certificate import certify
-from jaxleas.contacts.planners import plan_sl1m
-from jaxleas.contacts.sl1m import attempt
+from jaxleas.contacts.programs.attempt import attempt
+from jaxleas.contacts.programs.sl1m import plan_sl1m
 from jaxleas.types.errors import InputError
 from tests.contacts.worlds import content, problem, rectangle
 

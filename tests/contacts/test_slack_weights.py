@@ -6,10 +6,10 @@ import pytest
 from benchmarks.contacts.l1 import scenario_a2, scenario_b
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.from_guide import problem_from_guide
-from jaxleas.contacts.planners import plan_sl1m
-from jaxleas.contacts.relaxation import relax
-from jaxleas.contacts.slack_weights import SlackWeights, slack_weights
-from jaxleas.contacts.steps import make_steps
+from jaxleas.contacts.programs.relaxation import relax
+from jaxleas.contacts.programs.sl1m import plan_sl1m
+from jaxleas.contacts.programs.slack_weights import SlackWeights, slack_weights
+from jaxleas.contacts.programs.steps import make_steps
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 from tests.contacts.worlds import problem

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import sys
 from dataclasses import asdict
 
 import pytest
@@ -111,3 +112,13 @@ def test_the_faithful_mode_has_no_surrogate_to_show(run):
     html = (run / "report.html").read_text()
     assert "in faithful mode the exact planner judges every episode" in html
     assert 'alt="calibration"' not in html
+
+
+def test_a_planner_of_ones_own_that_is_gone_is_reported_by_its_name(run):
+    (run / "config.yaml").write_text(to_yaml(DistillationConfig(planner="evil:Planner")))
+    (run / "evil.py").write_text("raise SystemExit('it ran')")
+    cli.run(["report", str(run)])
+    html = (run / "report.html").read_text()
+    assert "evil:Planner" in html
+    assert "leas_p2_evil:Planner=" in html
+    assert "evil" not in sys.modules

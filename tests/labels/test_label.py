@@ -8,6 +8,7 @@ from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import (
     Here,
     MipSettings,
+    Oracle,
     ProcessWorkers,
     Sl1mSettings,
     judge_shard,
@@ -33,7 +34,11 @@ def work(tmp_path):
 
 def shards_of(folder, settings=SETTINGS):
     return plan_shards(
-        [folder / "walks.npz"], folder / "hole.json", "sampling", settings, folder / "out", 2
+        [folder / "walks.npz"],
+        folder / "hole.json",
+        Oracle("sampling", settings),
+        folder / "out",
+        2,
     )
 
 
@@ -118,7 +123,7 @@ def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
     folder, _ = work
     name = "sl1m" if isinstance(settings, Sl1mSettings) else "mip"
     shards = plan_shards(
-        [folder / "walks.npz"], folder / "hole.json", name, settings, folder / "out"
+        [folder / "walks.npz"], folder / "hole.json", Oracle(name, settings), folder / "out"
     )
     assert label_shards(shards, Here(), lambda count: None) == (5, 0)
     for provenance, verdict in read_verdicts(folder / "out"):
@@ -131,13 +136,20 @@ def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
 def test_bad_input_is_one_sentence(work):
     folder, _ = work
     with pytest.raises(InputError, match="no planner 'magic'"):
-        plan_shards([folder / "walks.npz"], folder / "hole.json", "magic", SETTINGS, folder / "out")
+        plan_shards(
+            [folder / "walks.npz"], folder / "hole.json", Oracle("magic", SETTINGS), folder / "out"
+        )
     with pytest.raises(InputError, match="two guide path files are called walks"):
         plan_shards(
-            [folder / "walks.npz"] * 2, folder / "hole.json", "sampling", SETTINGS, folder / "out"
+            [folder / "walks.npz"] * 2,
+            folder / "hole.json",
+            Oracle("sampling", SETTINGS),
+            folder / "out",
         )
     with pytest.raises(InputError, match="takes MipSettings, not SamplingSettings"):
-        plan_shards([folder / "walks.npz"], folder / "hole.json", "mip", SETTINGS, folder / "out")
+        plan_shards(
+            [folder / "walks.npz"], folder / "hole.json", Oracle("mip", SETTINGS), folder / "out"
+        )
     with pytest.raises(InputError, match="--samples is for the planner sampling, not for mip"):
         label(
             [folder / "walks.npz"],

@@ -2,17 +2,22 @@
 
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from jaxleas import cli
+from jaxleas.contacts.own_planner import judge_by_own
+from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.registry import find_planner, permit
 from jaxleas.distillation.config import DistillationConfig
+from jaxleas.distillation.folder import DistillationFolder
+from jaxleas.distillation.opening import open_folder
 from jaxleas.files import read_json
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import Judge, Outcome, OwnPlanner, read_verdicts
-from jaxleas.labels.own_planner import judge_by_own, load_planner, require_said
-from jaxleas.labels.settings import settings_from
+from jaxleas.robots import load_talos, robot_digest, write_robot
 from jaxleas.surrogates.label_files import read_labels
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
@@ -94,7 +99,7 @@ def test_changed_code_or_settings_are_not_mixed_in(here) -> None:
 
 
 def test_workers_elsewhere_import_it_too(here) -> None:
-    settings = settings_from(NAME, furthest=1.21)
+    settings = settings_from(find_planner(NAME, [NAME]), furthest=1.21)
     with Judge(NAME, settings, processes=2) as judge:
         verdicts = judge.judge([hole()], PATHS, [0] * 5)
     assert [verdict.last_index for verdict in verdicts] == expected(1.21)
@@ -137,7 +142,7 @@ def test_an_answer_that_cannot_be_is_refused(answer: int, message: str) -> None:
 
 
 def test_what_is_counted(here) -> None:
-    planner = load_planner(NAME)(furthest=1.21)
+    planner = find_planner(NAME, [NAME]).settings(furthest=1.21)
     path = PATHS[-1]
     verdict = judge_by_own(hole(), path, planner, 3)
     last = expected(1.21)[-1]
@@ -156,7 +161,7 @@ def test_what_is_counted(here) -> None:
         ("walkers_of_mine:something", "is no planner: derive a class from"),
         ("walkers_of_mine:", "cannot be loaded"),
         (":Walker", "cannot be loaded"),
-        ("walker", "there is no planner 'walker' for labels; there are sampling, mip, sl1m, and"),
+        ("walker", "there is no planner 'walker'; there are sampling, mip, sl1m, or"),
     ],
 )
 def test_a_planner_that_is_none_is_refused(here, name: str, message: str) -> None:
@@ -188,7 +193,7 @@ def test_a_file_alone_runs_no_code(here) -> None:
     with pytest.raises(InputError, match="asks for the planner evil:Walker, not for mip"):
         cli.run(["distill", "d.yaml", "--planner", "mip", "--out", "out"])
     assert not (here / "out").exists()
-    require_said(here / "d.yaml", "sampling", None)
+    assert permit(here / "d.yaml", "sampling", None) == ()
     with pytest.raises(ValueError, match="planner"):
         DistillationConfig(planner="os.system")
 
@@ -202,3 +207,44 @@ def test_a_verdict_file_that_names_code_only_tells_its_name(here) -> None:
     (here / "evil.py").write_text("raise SystemExit('it ran')")
     assert read_labels([here / "labels"], [here], 0.1).planner == "evil:Walker"
     assert "evil" not in sys.modules
+
+
+def test_labels_record_their_robot(here) -> None:
+    """A planner of one's own judges any robot; a surrogate of the labels is for that robot."""
+    write_robot(here / "robots" / "walker.json", replace(load_talos(), name="walker"))
+    cli.run([*COMMAND, "--robot", "walker", "--out", "labels", "--processes", "1"])
+    provenance = read_verdicts("labels")[0][0]
+    assert provenance["robot"] == {"name": "walker", "sha256": robot_digest("walker")}
+    assert read_labels([here / "labels"], [here], 0.1).robot == "walker"
+    with pytest.raises(InputError, match="made with other robot"):
+        cli.run([*COMMAND, "--out", "labels"])
+    fit = ["fit", "labels", "--where", ".", "--out", "s.npz"]
+    with pytest.raises(InputError, match="holds verdicts on walker, but the policy is for talos"):
+        cli.run(fit)
+    with pytest.raises(InputError, match="there is no robot 'wlaker'"):
+        cli.run([*COMMAND, "--robot", "wlaker", "--out", "other"])
+
+
+def test_labels_from_before_robots_were_recorded_are_gone_on_with(here, capsys) -> None:
+    cli.run([*COMMAND, "--out", "labels", "--processes", "1"])
+    (file,) = (here / "labels").rglob("verdicts_*.json")
+    content = read_json(file)
+    del content["provenance"]["robot"]
+    file.write_text(json.dumps(content))
+    cli.run([*COMMAND, "--out", "labels", "--processes", "1"])
+    assert "0 judged now" in capsys.readouterr().out
+
+
+def test_a_setting_given_twice_is_refused(here) -> None:
+    with pytest.raises(InputError, match="--keep-every and --parameters keep_every say the same"):
+        cli.run([*COMMAND, "--keep-every", "3", "--parameters", "keep_every=4", "--out", "x"])
+
+
+def test_the_workplace_of_a_distillation_imports_what_was_said_alone(here) -> None:
+    config = DistillationConfig(planner=NAME)
+    folder = DistillationFolder(here / "p2")
+    with pytest.raises(InputError, match="is code: if you trust it"):
+        open_folder(folder, config, None)
+    assert "walkers_of_mine" not in sys.modules
+    assert open_folder(folder, config, None, [NAME]) == config
+    assert "walkers_of_mine" in sys.modules

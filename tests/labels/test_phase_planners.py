@@ -6,8 +6,9 @@ import pytest
 
 from jaxleas.contacts import PlannerError, plan_mip, problem_from_guide
 from jaxleas.contacts.from_guide import NoGroundError, kept_configurations
+from jaxleas.contacts.programs import mip
 from jaxleas.labels import MipSettings, Sl1mSettings, judge, judge_over
-from jaxleas.labels import phase_planners as rooms
+from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
 from tests.contacts.sampling.worlds import flat, floor, hole, stairs, straight
 
@@ -108,7 +109,7 @@ def test_a_planner_that_breaks_gives_no_verdict(monkeypatch):
     def broken(*args, **kwargs):
         raise PlannerError("no answer")
 
-    monkeypatch.setattr(rooms, "plan_mip", broken)
+    monkeypatch.setattr(mip, "plan_mip", broken)
     (verdict,) = judge("mip", flat(), [straight(1.0)])
     assert not verdict.decided
     assert "no answer" in verdict.reason
@@ -122,3 +123,31 @@ def test_many_scenes_answer_in_the_order_of_the_paths():
         (alone,) = judge("sampling", scene, [path])
         assert (verdict.success, verdict.last_index) == (alone.success, alone.last_index)
         assert verdict.length == len(path)
+
+
+def g1_walk(length: float):
+    """A straight walk at the walking height of a smaller biped."""
+    path = straight(length)
+    root = [0.0, 0.0, load_robot("g1").walking_height]
+    return replace(path, position=path.position * [1.0, 1.0, 0.0] + root)
+
+
+@BOTH
+def test_another_biped_is_judged_by_its_own_polytopes(planner):
+    kind = MipSettings if planner == "mip" else Sl1mSettings
+    near, far = (
+        judge(planner, flat(), [g1_walk(2.0)], kind(keep_every=every), robot="g1")[0]
+        for every in (10, 19)
+    )
+    assert near.success
+    assert not far.success  # Talos's legs would do
+    assert judge(planner, flat(), [straight(2.0)], kind(keep_every=19))[0].success
+    (lost,) = judge(planner, flat(), [straight(2.0)], robot="g1")  # at Talos's height
+    assert not lost.success
+
+
+@pytest.mark.slow
+def test_another_biped_is_judged_by_sampling_its_own_legs():
+    near, tall = judge("sampling", flat(), [g1_walk(1.0), straight(1.0)], robot="g1")
+    assert near.success
+    assert not tall.success

@@ -1,4 +1,6 @@
 from jaxleas.evaluation.result_file import CellResult, Evaluation
+from jaxleas.evaluation.titles import method_title, refined_name, refined_names
+from jaxleas.reports.side_by_side import headings, rows
 from jaxleas.reports.table import percent, plain_table
 
 
@@ -57,3 +59,30 @@ def test_columns_without_a_word_are_left_out():
     assert "near" not in text
     assert "stay valid" in text
     assert len({len(line) for line in text.splitlines()[1:3]}) == 1
+
+
+def test_planners_stand_side_by_side_with_their_titles_and_what_they_report():
+    """A planner of the user's own is shown by its name, and never imported for its title."""
+    numbers = {"planned": 0.98, "name": "stairs", "speed": 0.2}
+    cells = [
+        cell(planner="sl1m", **numbers),
+        cell(planner="m:Own", **numbers),
+        cell(planner="sampling", **numbers),
+    ]
+    shown = headings(evaluation("thesis", *cells))
+    assert shown[6:] == (
+        *("SL1M", "95 %", "step"),
+        *("m:Own", "95 %", "step"),
+        *("sampling", "95 %", "robustness", "step"),
+        "thesis",
+    )
+    robust = cell(planner="m:Own", robustness=3.0, **numbers)
+    assert headings(evaluation("thesis", robust))[6:10] == ("m:Own", "95 %", "robustness", "step")
+    (row,) = rows(evaluation("thesis", *cells))
+    assert len(row) == len(shown)
+
+
+def test_policies_refined_against_a_planner_bear_its_title():
+    assert method_title("leas_p2_mip") == "LEAS-P2 (MIP)"
+    assert method_title("leas_p2_m:Own") == "leas_p2_m:Own"
+    assert refined_name("mip") in refined_names()

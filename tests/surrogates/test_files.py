@@ -1,6 +1,7 @@
 """Surrogate files and label folders: exact there and back, refused when something does not fit."""
 
 import json
+import shutil
 
 import jax
 import jax.numpy as jnp
@@ -8,11 +9,12 @@ import numpy as np
 import pytest
 
 from jaxleas import cli
+from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import read_json, read_npz, write_json, write_npz
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import Here, label_shards, plan_shards
-from jaxleas.labels.settings import settings_from
+from jaxleas.labels import Here, Oracle, label_shards, plan_shards
+from jaxleas.robots import robot_digest
 from jaxleas.surrogates import (
     Surrogate,
     read_labels,
@@ -99,8 +101,7 @@ def labelled(tmp_path_factory):
         shards = plan_shards(
             [folder / f"guides_{number}.npz"],
             folder / f"scene_{number}.json",
-            "sampling",
-            settings_from("sampling", samples=500),
+            Oracle("sampling", settings_from("sampling", samples=500)),
             folder / "verdicts",
         )
         label_shards(shards, Here(), lambda count: None)
@@ -121,8 +122,6 @@ def test_label_folders_are_read_with_paths_and_terrain(labelled):
 
 
 def test_a_scene_that_changed_or_is_missing_is_refused(labelled, tmp_path):
-    import shutil
-
     shutil.copytree(labelled / "verdicts", tmp_path / "v")
     with pytest.raises(InputError, match=r"scene_0\.json, which was judged, is nowhere"):
         read_labels([tmp_path / "v"], [], 0.1)
@@ -161,8 +160,6 @@ def test_fit_refuses_with_one_sentence(labelled, tmp_path, arguments, sentence):
 
 def changed(labelled, tmp_path, change):
     """A copy of the labels, one file of them changed."""
-    import shutil
-
     shutil.copytree(labelled / "verdicts", tmp_path / "verdicts")
     for file in sorted((tmp_path / "verdicts").rglob("verdicts_*.json")):
         content = read_json(file)
@@ -184,10 +181,36 @@ def test_labels_of_another_robot_or_version_are_refused(labelled, tmp_path, chan
         read_labels([changed(labelled, tmp_path, change)], [labelled], 0.1)
 
 
-def test_labels_are_of_the_policys_own_robot(labelled, tmp_path, monkeypatch):
-    import jaxleas.surrogates.label_files as label_files
+def test_old_labels_that_name_no_robot_are_of_talos_and_go_with_new_ones(labelled, tmp_path):
+    folder = changed(labelled, tmp_path, lambda content: content["provenance"].pop("robot"))
+    labels = read_labels([folder], [labelled], 0.1)
+    assert labels.robot == "talos"
+    assert labels.robot_digest == robot_digest("talos")
+    assert len(labels.walks) == 8
 
-    monkeypatch.setattr(label_files, "_robot", lambda provenance: "atlas")
+
+def fit_to(labelled, tmp_path, **robot):
+    """The command, on labels whose robot is changed."""
+    shutil.copytree(labelled / "verdicts", tmp_path / "verdicts")
+    for file in (tmp_path / "verdicts").rglob("verdicts_*.json"):
+        content = read_json(file)
+        content["provenance"]["robot"] |= robot
+        write_json(file, content)
+    verdicts, where = str(tmp_path / "verdicts"), str(labelled)
+    cli.run(["fit", verdicts, "--where", where, "--out", str(tmp_path / "s.npz")])
+
+
+def test_labels_are_of_the_policys_own_robot(labelled, tmp_path):
     with pytest.raises(InputError, match="verdicts on atlas, but the policy is for talos"):
-        cli.run(["fit", str(labelled / "verdicts"), "--out", str(tmp_path / "s.npz")])
+        fit_to(labelled, tmp_path, name="atlas")
     assert not (tmp_path / "s.npz").exists()
+
+
+def test_labels_are_of_the_robot_as_it_is_now(labelled, tmp_path):
+    with pytest.raises(InputError, match="verdicts on talos as it was before its file changed"):
+        fit_to(labelled, tmp_path, sha256="0" * 64)
+
+
+def test_labels_of_the_policys_robot_go_on_to_the_fit(labelled, tmp_path):
+    with pytest.raises(InputError, match="the labels come from 2 terrains"):
+        fit_to(labelled, tmp_path)

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import pytest
 
 from jaxleas.files import write_text
-from jaxleas.sweeps import objectives
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.charts import place_on
 from jaxleas.sweeps.config import Dimension, Exact, TimeToSuccess
@@ -72,7 +71,7 @@ def test_exact_success_is_the_mean_over_the_cells_of_held_out_suites(tmp_path, m
         asked.append((suite.name, [cell.starts for cell in suite.cells], *planners))
         return [SimpleNamespace(planned=share) for share in (0.5, None, 1.0)]
 
-    monkeypatch.setattr(objectives, "judge_exact", judge)
+    monkeypatch.setattr("jaxleas.evaluation.exact.judge_exact", judge)
     (tmp_path / "run").mkdir()
     write_policy(tmp_path / "run/policy.npz", random_policy())
     exact = Exact(measure="exact", planner="sl1m", suites=("hole", "wall"), starts=3)

@@ -1,12 +1,15 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jaxleas.contacts.plan import ContactPlan, write_plan
-from jaxleas.contacts.planners import plan_mip
 from jaxleas.contacts.problem_file import write_problem
+from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.guide import write_guide_paths
 from jaxleas.types import GuidePath, InputError
 from jaxleas.viewer.clips import guide_clip, plan_clip, read_guide_clips, read_plan_clip
+from jaxleas.viewer.playback import figure_robot
 from tests.contacts.worlds import problem, stones
 
 
@@ -65,3 +68,14 @@ def test_an_infeasible_plan_shows_where_the_feet_stood():
     clip = plan_clip("stones", asked, ContactPlan("mip", False, "infeasible", "why"))
     assert len(clip.footholds) == 2
     assert clip.duration == 0.0
+
+
+def test_the_figure_is_of_the_robot_that_moves():
+    asked = problem(stones(0.05))
+    clips = [plan_clip("a", asked, plan_mip(asked)), guide_clip("path", straight())]
+    assert figure_robot(clips[1:]).name == "talos"
+    assert figure_robot(clips).name == "talos"
+    assert figure_robot([replace(clips[0], robot="g1")]).name == "g1"
+    assert figure_robot([replace(clips[0], robot="of its own")]).name == "talos"
+    with pytest.raises(InputError, match="of different robots, talos and g1"):
+        figure_robot([*clips, replace(clips[0], robot="g1")])

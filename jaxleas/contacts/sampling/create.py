@@ -13,6 +13,7 @@ from jaxleas.contacts.sampling.limbs import (
     PlacedLegs,
     body_moments,
     legs_collide,
+    other_leg,
     place_legs,
     rotations_to_world,
     to_world,
@@ -86,7 +87,7 @@ def create_contacts(
     """
     count = len(aim)
     each = np.arange(count)
-    standing = 1 - aim.limb
+    standing = other_leg(aim.limb)
     kept = place_legs(
         world.legs,
         aim.roots,
@@ -217,7 +218,7 @@ def _two_points(
     rotation: np.ndarray,
 ) -> Bool[np.ndarray, " M"]:
     """Tell whether the centre of mass can be over the standing foot with the other at `sole`."""
-    standing = 1 - aim.limb[row]
+    standing = other_leg(aim.limb[row])
     return com_exists(
         world.legs.com_in_foot,
         stances.sole[row, standing],

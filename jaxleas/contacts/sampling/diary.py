@@ -69,7 +69,9 @@ class Diary:
                     moved=moved[rows],
                     soles=stances.sole[rows],
                     rotations=stances.rotation[rows],
-                    surfaces=tuple((names[a], names[b]) for a, b in stances.surface[rows]),
+                    surfaces=tuple(
+                        tuple(names[each] for each in row) for row in stances.surface[rows]
+                    ),
                     com=com[rows],
                     robustness=robustness[rows],
                     repositions=int((kind[rows] == _HOWS.index("repositioned")).sum()),

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from jaxleas.contacts.problem import FEET
 from jaxleas.contacts.sampling.create import create_contacts
 from jaxleas.contacts.sampling.guides import KeptGuides
 from jaxleas.contacts.sampling.maintain import maintain_contacts
@@ -22,15 +21,19 @@ def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) ->
     guide, here = np.zeros(1, dtype=np.int64), np.array([at])
     kept = maintain_contacts(world, guides.roots[guides.flat(guide, here)], stances[guide])
     sentences = []
-    for limb, foot in enumerate(FEET):
-        other = 1 - limb
-        if not kept.limb[0, other]:
-            sentences.append(f"{foot} cannot move, as {FEET[other]} cannot stay where it is")
+    feet = world.robot.foot_names
+    for limb, foot in enumerate(feet):
+        others = [each for each in range(len(feet)) if each != limb]
+        if stuck := [feet[other] for other in others if not kept.limb[0, other]]:
+            names = " and ".join(stuck)
+            sentences.append(f"{foot} cannot move, as {names} cannot stay where it is")
             continue
         tally: dict[str, int] = {}
         aim = guides.aim(guide, here, np.array([limb]))
         create_contacts(world, aim, stances[guide], guide, tally=tally)
-        sentences.append(f"{foot} {_first_failed(tally, FEET[other])}")
+        sentences.append(
+            f"{foot} {_first_failed(tally, ' and '.join(feet[other] for other in others))}"
+        )
     return "; ".join(sentences)
 
 

@@ -18,7 +18,7 @@ from jaxleas.contacts.sampling.limbs import (
     to_world,
 )
 from jaxleas.contacts.sampling.maintain import maintain_contacts
-from jaxleas.contacts.sampling.stance import LIMBS, Stances, no_stances, support_corners
+from jaxleas.contacts.sampling.stance import Stances, no_stances, support_corners
 from jaxleas.contacts.sampling.world import World
 
 _FIRST_FEET = 8  # places tried for the left foot, where the reference posture does not do
@@ -54,7 +54,7 @@ def _reference_stances(
     """Return feet on the highest surface below their reference places, and whether there is one."""
     ground, count = world.ground, len(roots)
     stances, good = no_stances(count), np.ones(count, dtype=bool)
-    for limb in range(LIMBS):
+    for limb in range(len(SIDES)):
         side = np.full(count, SIDES[limb])
         place = to_world(np.broadcast_to(reference_sole, (count, 3)), roots.yaw, side)
         place = place + roots.position

@@ -10,7 +10,12 @@ from jaxleas.contacts.sampling.ground import Ground
 from jaxleas.robots.legs import LegModel, leg_angles, leg_posture
 
 SIDES = np.array([1.0, -1.0])
-"""Sign of y: left, right."""
+"""Sign of y of each leg: left, right. This planner moves two legs that are mirror images."""
+
+
+def other_leg(limb: Int[np.ndarray, "*batch"]) -> Int[np.ndarray, "*batch"]:
+    """Return the index of the leg that stands while one moves."""
+    return len(SIDES) - 1 - limb
 
 
 @dataclass(frozen=True)

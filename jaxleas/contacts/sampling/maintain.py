@@ -12,7 +12,7 @@ from jaxleas.contacts.sampling.limbs import (
     legs_collide,
     place_legs,
 )
-from jaxleas.contacts.sampling.stance import LIMBS, Stances
+from jaxleas.contacts.sampling.stance import Stances
 from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import mass_moment
 
@@ -43,9 +43,9 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
         roots: where the robots would be.
         stances: their contacts.
     """
-    count = len(roots)
-    limb = np.tile(np.arange(LIMBS), count)
-    pair = np.repeat(np.arange(count), LIMBS)
+    count, limbs = len(roots), stances.sole.shape[1]
+    limb = np.tile(np.arange(limbs), count)
+    pair = np.repeat(np.arange(count), limbs)
     placed = place_legs(
         world.legs,
         roots[pair],
@@ -57,12 +57,12 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     rows = np.flatnonzero(kept)
     if len(rows):
         kept[rows] = ~legs_collide(world.legs, placed, rows, world.ground, feet=False)
-    kept = kept.reshape(count, LIMBS)
+    kept = kept.reshape(count, limbs)
     segments = leg_segments(world.legs, placed)
-    segments = segments.reshape(count, LIMBS, *segments.shape[1:])
+    segments = segments.reshape(count, limbs, *segments.shape[1:])
     both = kept.all(axis=1) & ~legs_touch(world.legs, segments[:, 0], segments[:, 1])
     moments = (
-        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, LIMBS, 3).sum(axis=1)
+        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, limbs, 3).sum(axis=1)
     )
     com = (body_moments(world.legs, roots) + moments) / world.legs.mass
     rows = np.flatnonzero(both)

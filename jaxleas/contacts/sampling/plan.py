@@ -44,7 +44,7 @@ class SamplingPlan:
     moved: Int[np.ndarray, " S"]
     soles: Float[np.ndarray, "S 2 3"]
     rotations: Float[np.ndarray, "S 2 3 3"]
-    surfaces: tuple[tuple[str, str], ...]
+    surfaces: tuple[tuple[str, ...], ...]
     com: Float[np.ndarray, "S 3"]
     robustness: Float[np.ndarray, " S"]
     repositions: int

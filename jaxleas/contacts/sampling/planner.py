@@ -14,6 +14,7 @@ from jaxleas.contacts.sampling.create import Created, create_contacts, put
 from jaxleas.contacts.sampling.diary import Diary
 from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations, require_usable
+from jaxleas.contacts.sampling.limbs import SIDES
 from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.plan import Ending, SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
@@ -115,7 +116,7 @@ class _Walk:
         self.at = np.zeros(count, dtype=np.int64)
         self.failures = np.zeros(count, dtype=np.int64)
         self.repositions = np.zeros(count, dtype=np.int64)
-        self.order = np.full(count, 2)
+        self.order = np.full(count, len(SIDES))
         self.live = np.ones(count, dtype=bool)
         self.ends: list[tuple[Ending, str]] = [("reached", "")] * count
         self.diary = Diary()
@@ -182,9 +183,10 @@ class _Walk:
     def _step(self, blocked: np.ndarray, can_stay: np.ndarray) -> np.ndarray:
         """Break one contact, the oldest first, and make it anew; return who could not."""
         pending = np.arange(len(blocked))
-        for turn in range(2):
+        for turn in range(self.limbs):
             limb = self._by_age(blocked[pending], turn)
-            pending_now = can_stay[pending, 1 - limb]
+            moves = np.arange(self.limbs) == limb[:, None]
+            pending_now = (can_stay[pending] | moves).all(axis=1)
             rows, limb = pending[pending_now], limb[pending_now]
             if len(rows):
                 guide = blocked[rows]
@@ -213,7 +215,7 @@ class _Walk:
             f"more than {settings.max_repositions} repositions were needed",
         )
         pending = failed[~enough & ~many]
-        for turn in range(2):
+        for turn in range(self.limbs):
             if len(pending):
                 limb = self._by_age(pending, turn)
                 made = self._create(pending, self.at[pending], limb, settings.moved)
@@ -228,10 +230,13 @@ class _Walk:
         )
 
     def _by_age(self, guide: np.ndarray, turn: int) -> np.ndarray:
-        """Return the limb with the oldest contact (turn 0) or the newest (turn 1)."""
-        since = self.stances.since[guide]
-        oldest = (since[:, 1] < since[:, 0]).astype(np.int64)
-        return oldest if turn == 0 else 1 - oldest
+        """Return the limb with the oldest contact (turn 0), the next one (turn 1), and so on."""
+        return np.argsort(self.stances.since[guide], axis=1, kind="stable")[:, turn]
+
+    @property
+    def limbs(self) -> int:
+        """Number of limbs that move."""
+        return self.stances.since.shape[1]
 
     def _create(
         self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray, least_move: float

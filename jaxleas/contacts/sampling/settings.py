@@ -4,12 +4,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.contacts.settings import PlannerSettings
 
 Heuristic = Literal["fixed_step", "manipulability", "effort", "reference"]
 
 
-class SamplingSettings(Strict):
+class SamplingSettings(PlannerSettings):
     """Settings of the sampling-based planner; the defaults are the published ones for Talos."""
 
     samples: Annotated[int, Field(ge=1, le=1_000_000)] = 25_000

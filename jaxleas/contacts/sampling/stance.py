@@ -1,4 +1,4 @@
-"""Both feet of many robots on the ground, and how well they stand."""
+"""The feet of many robots on the ground, and how well they stand."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.contacts.sampling.ground import Ground
-
-LIMBS = 2
+from jaxleas.contacts.sampling.limbs import SIDES
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +44,13 @@ class Stances:
 
 def no_stances(count: int) -> Stances:
     """Return stances without contacts, to be written into."""
+    limbs = len(SIDES)
     return Stances(
-        sole=np.zeros((count, LIMBS, 3)),
-        rotation=np.broadcast_to(np.eye(3), (count, LIMBS, 3, 3)).copy(),
-        surface=np.full((count, LIMBS), -1),
-        corners=np.zeros((count, LIMBS, 4, 3)),
-        since=np.zeros((count, LIMBS), dtype=np.int64),
+        sole=np.zeros((count, limbs, 3)),
+        rotation=np.broadcast_to(np.eye(3), (count, limbs, 3, 3)).copy(),
+        surface=np.full((count, limbs), -1),
+        corners=np.zeros((count, limbs, 4, 3)),
+        since=np.zeros((count, limbs), dtype=np.int64),
     )
 
 

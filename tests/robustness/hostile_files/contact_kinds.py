@@ -67,6 +67,7 @@ def contact_kinds(folder: Path) -> list[Kind]:
         kind_of("contact problem", folder / "problem.json", read_problem, m.mutate_json),
         kind_of("contact plan", folder / "plan.json", plan_read, m.mutate_json, asked),
         kind_of("robot", data / "talos.json", read_robot, m.mutate_json),
+        kind_of("robot with numeric legs", data / "g1.json", read_robot, m.mutate_json),
         kind_of(
             "URDF", folder / "toy.urdf", lambda path: read_chain(path, "a", "c"), m.mutate_text
         ),

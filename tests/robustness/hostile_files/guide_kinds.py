@@ -14,10 +14,10 @@ def guide_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.guide_file import read_guide_path
     from jaxleas.guide.files import read_queries, write_guide_paths
     from jaxleas.labels.label import plan_shards
+    from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.shards import read_verdicts, write_shard
-    from jaxleas.labels.verdict import Verdict
     from jaxleas.surrogates.label_files import read_labels
-    from jaxleas.types import GuidePath
+    from jaxleas.types import GuidePath, Verdict
     from jaxleas.viewer.clips import read_guide_clips
 
     query = {"position": [0.5, 0.5, 0.95], "yaw": 0.0, "velocity": [0, 0, 0], "goal": [2.5, 0.5]}
@@ -32,7 +32,7 @@ def guide_kinds(folder: Path) -> list[Kind]:
     )
     write_guide_paths(folder / "guides.npz", [path, path], ["reached", "stopped"])
     scene, guides = folder / "scene.json", folder / "guides.npz"
-    (shard,) = plan_shards([guides], scene, "sampling", None, folder / "labels")
+    (shard,) = plan_shards([guides], scene, Oracle("sampling"), folder / "labels")
     verdict = Verdict(
         *(0, True, True, 29, 30, 1.0, 4, 0.2, 0, 10.0, 12.0, None, None, "", 0.1),
     )

@@ -4,16 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jaxleas.contacts.com import with_first_cuts
-from jaxleas.contacts.combinations import Combinations
-from jaxleas.contacts.linear_program import Outcome
-from jaxleas.contacts.mixed_integer import Candidates
-from jaxleas.contacts.placement import Placement, place
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.pruning import prune
-from jaxleas.contacts.relaxation import Relaxed, relax
-from jaxleas.contacts.slack_weights import SlackWeights
-from jaxleas.contacts.steps import Step, make_steps
+from jaxleas.contacts.programs.com import with_first_cuts
+from jaxleas.contacts.programs.combinations import Combinations
+from jaxleas.contacts.programs.linear_program import Outcome
+from jaxleas.contacts.programs.mixed_integer import Candidates
+from jaxleas.contacts.programs.placement import Placement, place
+from jaxleas.contacts.programs.pruning import prune
+from jaxleas.contacts.programs.relaxation import Relaxed, relax
+from jaxleas.contacts.programs.slack_weights import SlackWeights
+from jaxleas.contacts.programs.steps import Step, make_steps
 
 DECIDED = 1e-6
 """A foothold this near to a surface [m] has selected it (the LP is solved to 1e-9)."""

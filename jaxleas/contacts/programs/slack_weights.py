@@ -1,14 +1,15 @@
 """Weights on SL1M's slacks: which surface of each step is preferred (T 5.3.4, as a prospect)."""
 
-import math
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.from_guide import BESIDE_ROOT, nearest_below
-from jaxleas.contacts.mixed_integer import Candidates
+from jaxleas.contacts.from_guide import nearest_below
 from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.contacts.programs.mixed_integer import Candidates
+from jaxleas.contacts.reference import reference_foothold
+from jaxleas.robots import load_robot
 from jaxleas.types import InputError
 
 SlackWeights = Literal["uniform", "guide"]
@@ -48,7 +49,6 @@ def slack_weights(
 def _preferred(problem: ContactProblem, names: tuple[str, ...], phase: Phase) -> int:
     """Return the candidate nearest to the foot's place beside the root; of equals the highest."""
     assert phase.root is not None
-    side = BESIDE_ROOT if phase.foot == "LF" else -BESIDE_ROOT
-    left = np.array([-math.sin(phase.yaw), math.cos(phase.yaw), 0.0])
-    found = [nearest_below(problem.surfaces[name], phase.root + side * left) for name in names]
+    place = reference_foothold(load_robot(problem.robot), phase.foot, phase.root, phase.yaw)
+    found = [nearest_below(problem.surfaces[name], place) for name in names]
     return min(range(len(names)), key=lambda number: (found[number][1], -found[number][0][2]))

@@ -1,21 +1,15 @@
 """A contact planner of the user's own: a class with settings and one method."""
 
-import hashlib
-import inspect
-import sys
 import time
 from dataclasses import dataclass
-from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import PositiveInt
 
-from jaxleas.configuration.strict import Strict
-from jaxleas.labels.verdict import Verdict, mean_step
+from jaxleas.contacts.planner import AskedGuides, Planner, mean_step
+from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.types import GuidePath, Verdict
 from jaxleas.types.errors import InputError
 
 
@@ -37,16 +31,13 @@ class Outcome:
     decided: bool = True
 
 
-class OwnPlanner(Strict):
+class OwnPlanner(PlannerSettings):
     """Base of a planner named as MODULE:CLASS; its fields are its settings.
 
     The settings are part of a verdict's provenance, as is the source file: verdicts of other
     settings or of changed code are never mixed. Workers in other processes import the module by its
     name.
     """
-
-    keep_every: PositiveInt = 5
-    """one guide configuration in so many is asked about"""
 
     def judge(self, scene: Scene, path: GuidePath) -> Outcome:
         """Plan contacts along a guide path.
@@ -58,61 +49,21 @@ class OwnPlanner(Strict):
         raise NotImplementedError(f"{type(self).__name__} has no method judge(scene, path)")
 
 
-def is_own(planner: str) -> bool:
-    """Whether a planner's name is that of a class, MODULE:CLASS."""
-    return ":" in planner
+class JudgedByOwn(Planner):
+    """A planner of the user's own, as the registry gives it: judged path by path."""
 
+    def __init__(self, name: str, kind: type[OwnPlanner]) -> None:
+        super().__init__(name)
+        self.settings = kind
 
-def load_planner(planner: str) -> type[OwnPlanner]:
-    """Import a planner of the user's own; the working folder is looked in, too.
+    @property
+    def source(self) -> type:
+        """The user's class."""
+        return self.settings
 
-    This runs code: call it for names from a command line, never for names from a file alone.
-
-    Raises:
-        InputError: there is no such module or class, or it is no planner.
-    """
-    module, _, name = planner.partition(":")
-    if (here := str(Path.cwd())) not in sys.path:
-        sys.path.append(here)
-    try:
-        found = getattr(import_module(module), name)
-    except (ImportError, AttributeError, ValueError) as error:
-        raise InputError(
-            f"the planner {planner} cannot be loaded: {error}; give MODULE:CLASS of a module in"
-            " this folder or one that is installed"
-        ) from error
-    if not (isinstance(found, type) and issubclass(found, OwnPlanner)):
-        raise InputError(
-            f"{planner} is no planner: derive a class from jaxleas.labels.OwnPlanner and give it"
-            " judge(scene, path)"
-        )
-    return found
-
-
-def require_said(config: Path, planner: str, said: str | None) -> None:
-    """Refuse to run code that only a file names.
-
-    Args:
-        config: the file.
-        planner: that it asks for.
-        said: on the command line.
-
-    Raises:
-        InputError: it is code, and was not said; or something else was said.
-    """
-    if said is None and is_own(planner):
-        raise InputError(
-            f"{config} asks for the planner {planner}, which is code: if you trust it, give"
-            f" --planner {planner} as well"
-        )
-    if said is not None and said != planner:
-        raise InputError(f"{config} asks for the planner {planner}, not for {said}")
-
-
-def source_of(planner: type[OwnPlanner]) -> dict[str, Any]:
-    """Return name and SHA-256 of the file that a planner is written in."""
-    file = Path(inspect.getfile(planner))
-    return {"file": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
+    def judge(self, asked: AskedGuides, settings: OwnPlanner) -> list[Verdict]:
+        """Judge guide paths one after the other."""
+        return [judge_by_own(scene, path, settings, number) for number, scene, path in asked]
 
 
 def judge_by_own(scene: Scene, path: GuidePath, planner: OwnPlanner, number: int = 0) -> Verdict:

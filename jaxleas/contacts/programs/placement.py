@@ -8,12 +8,12 @@ import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 
-from jaxleas.contacts.com import foot_yaws
-from jaxleas.contacts.com_places import place_coms
-from jaxleas.contacts.least_distance import least_distance
-from jaxleas.contacts.linear_program import Outcome, Program, Rows, Solution, solve
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step, rotation
+from jaxleas.contacts.programs.com import foot_yaws
+from jaxleas.contacts.programs.com_places import place_coms
+from jaxleas.contacts.programs.least_distance import least_distance
+from jaxleas.contacts.programs.linear_program import Outcome, Program, Rows, Solution, solve
+from jaxleas.contacts.programs.steps import INITIAL, Link, Step, rotation
 from jaxleas.types.errors import InputError
 
 MOST_MARGIN = 0.02
@@ -94,7 +94,7 @@ def put_com(
     """
     if problem.model != "two_com":
         return None, steps, 0
-    stood = np.array([standing_point(problem, step, footholds) for step in steps])
+    stood = np.array([standing_point(problem, step.link, footholds) for step in steps])
     turns = np.array([[rotation(yaw) for yaw in yaws] for yaws in foot_yaws(problem, steps)])
     places, cuts = place_coms(steps, footholds - stood, problem.foot_half_size, turns)
     steps = list(steps)
@@ -105,12 +105,12 @@ def put_com(
 
 
 def standing_point(
-    problem: ContactProblem, step: Step, footholds: Float[np.ndarray, "n 3"]
+    problem: ContactProblem, link: Link, footholds: Float[np.ndarray, "n 3"]
 ) -> Float[np.ndarray, " 3"]:
-    """Return where the foot stands that does not move [m]."""
-    if step.standing != INITIAL:
-        return footholds[step.standing]
-    return problem.initial["RF" if step.foot == "LF" else "LF"].position
+    """Return where a foot stands that does not move [m]."""
+    if link.standing != INITIAL:
+        return footholds[link.standing]
+    return problem.initial[link.effector].position
 
 
 def _place_feet(
@@ -131,21 +131,23 @@ def _place_feet(
     columns = np.arange(2 * count).reshape(count, 2)
     slack = np.array([2 * count])
     rows = Rows(2 * count + 1)
-    owners = []  # the phases that a row is about: where it lands, where the other foot stands
+    owners = []  # the phases that a row is about: where it lands, where another foot stands
     for index, (plane, step) in enumerate(zip(planes, steps, strict=True)):
         inside = plane.edge_offsets - plane.edge_normals @ origin[index]
         ones = np.ones((len(inside), 1))
         rows.add([(columns[index], plane.edge_normals @ plane.basis.T), (slack, ones)], inside)
-        ones = np.ones((len(step.b), 1))
-        blocks = [(columns[index], step.A @ plane.basis.T), (slack, ones)]
-        bound = step.b - step.A @ origin[index]
-        if step.standing == INITIAL:
-            bound = bound + step.A @ standing_point(problem, step, origin)
-        else:
-            blocks.append((columns[step.standing], -step.A @ planes[step.standing].basis.T))
-            bound = bound + step.A @ origin[step.standing]
-        rows.add(blocks, bound)
-        owners += [(index, index)] * len(inside) + [(index, step.standing)] * len(step.b)
+        owners += [(index, index)] * len(inside)
+        for link in step.links:
+            ones = np.ones((len(link.b), 1))
+            blocks = [(columns[index], link.A @ plane.basis.T), (slack, ones)]
+            bound = link.b - link.A @ origin[index]
+            if link.standing == INITIAL:
+                bound = bound + link.A @ standing_point(problem, link, origin)
+            else:
+                blocks.append((columns[link.standing], -link.A @ planes[link.standing].basis.T))
+                bound = bound + link.A @ origin[link.standing]
+            rows.add(blocks, bound)
+            owners += [(index, link.standing)] * len(link.b)
     program = _most_slack(rows, count)
     solution = solve(program, deadline - time.perf_counter())
     if solution.outcome != "optimal":

@@ -1,4 +1,4 @@
-"""What one step may be: the displacement from the standing foot, as half-spaces in the world."""
+"""What one step may be: its displacements from the standing feet, as half-spaces in the world."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.problem import ContactProblem, FootPose
+from jaxleas.contacts.problem import ContactProblem
 
 INITIAL = -1
 """Stands for "where the foot stood before the first phase" among indices of phases."""
@@ -26,29 +26,57 @@ class HalfSpaces:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
-    """The relation between a landing foot m and the standing foot o, in world axes.
-
-    There must be a centre of mass c with c - p_o in `com[i][0]` and c - p_m in `com[i][1]`, for
-    each i; and A (p_m - p_o) <= b. Cuts that the former implies are appended to the latter.
+class Link:
+    """The relation between the landing foot m and one standing foot o: A (p_m - p_o) <= b.
 
     Attributes:
-        foot: that moves.
-        standing: phase in which the other foot landed, or INITIAL.
-        A: unit rows.
+        effector: the one that stands.
+        standing: phase in which it landed, or INITIAL.
+        yaw: heading with which it stands [rad].
+        A: unit rows, in world axes.
         b: [m].
+    """
+
+    effector: str
+    standing: int
+    yaw: float
+    A: Float[np.ndarray, "n 3"]
+    b: Float[np.ndarray, " n"]
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """What a landing foot m owes to all standing feet.
+
+    With two feet there must besides be a centre of mass c with c - p_o in `com[i][0]` and c - p_m
+    in `com[i][1]`, for each i. Cuts that this implies are appended to the rows of the link.
+
+    Attributes:
+        foot: effector that moves.
+        links: relation to each effector that stands.
         com: for c_k0 and c_k1; empty for the model "feet".
     """
 
     foot: str
-    standing: int
-    A: Float[np.ndarray, "n 3"]
-    b: Float[np.ndarray, " n"]
+    links: tuple[Link, ...]
     com: tuple[tuple[HalfSpaces, HalfSpaces], ...] = ()
 
+    @property
+    def link(self) -> Link:
+        """The relation to the other one of two feet."""
+        (only,) = self.links
+        return only
+
+    @property
+    def size(self) -> int:
+        """Number of rows of all links."""
+        return sum(len(link.b) for link in self.links)
+
     def with_cuts(self, A: Float[np.ndarray, "c 3"], b: Float[np.ndarray, " c"]) -> "Step":
-        """Return the step with further rows on the displacement."""
-        return replace(self, A=np.concatenate([self.A, A]), b=np.concatenate([self.b, b]))
+        """Return the step of two feet with further rows on the displacement."""
+        link = self.link
+        rows, bounds = np.concatenate([link.A, A]), np.concatenate([link.b, b])
+        return replace(self, links=(replace(link, A=rows, b=bounds),))
 
 
 def make_steps(
@@ -56,27 +84,31 @@ def make_steps(
 ) -> list[Step]:
     """Return the step of each phase.
 
-    Model "feet" (published SL1M code): A_{o_in_m} R_k^T (p_o - p_m) <= b; model "two_com" (T eq.
-    B.3): A_{m_in_o} R_{k-1}^T (p_m - p_o) <= b, and two positions of the centre of mass.
+    Model "feet" (published SL1M code): A_{o_in_m} R_k^T (p_o - p_m) <= b, for each foot o that
+    stands; model "two_com" (T eq. B.3): A_{m_in_o} R_{k-1}^T (p_m - p_o) <= b, and two positions of
+    the centre of mass.
 
     Args:
         problem: the contact problem.
         relaxed: families of constraints that the *last* phase may violate by so much [m].
     """
-    stances = {foot: (INITIAL, pose) for foot, pose in problem.initial.items()}
+    stances = {name: (INITIAL, pose.yaw) for name, pose in problem.initial.items()}
     steps = []
     for index, phase in enumerate(problem.phases):
-        other = "RF" if phase.foot == "LF" else "LF"
-        standing, pose = stances[other]
         more = (relaxed or {}) if index == len(problem) - 1 else {}
-        reach = _reach(problem, phase.foot, phase.yaw, other, pose.yaw)
-        bound = reach.b + more.get("step", 0.0)
+        links = []
+        for name, (standing, yaw) in stances.items():
+            if name == phase.foot:
+                continue
+            reach = _reach(problem, phase.foot, phase.yaw, name, yaw)
+            links.append(Link(name, standing, yaw, reach.A, reach.b + more.get("step", 0.0)))
         com = ()
         if problem.model == "two_com":
-            feet = ((other, rotation(pose.yaw)), (phase.foot, rotation(phase.yaw)))
+            (other,) = links
+            feet = ((other.effector, rotation(other.yaw)), (phase.foot, rotation(phase.yaw)))
             com = tuple(_com(problem, feet, over, more) for over in (0, 1))
-        steps.append(Step(phase.foot, standing, reach.A, bound, com))
-        stances[phase.foot] = (index, FootPose(np.zeros(3), phase.yaw))
+        steps.append(Step(phase.foot, tuple(links), com))
+        stances[phase.foot] = (index, phase.yaw)
     return steps
 
 
@@ -90,9 +122,9 @@ def _reach(
     problem: ContactProblem, foot: str, yaw: float, other: str, other_yaw: float
 ) -> HalfSpaces:
     if problem.model == "feet":
-        reach = problem.polytopes.foot[foot]
+        reach = problem.polytopes.reach(other, foot)
         return HalfSpaces(-reach.normals @ rotation(yaw).T, reach.offsets)
-    reach = problem.polytopes.foot[other]
+    reach = problem.polytopes.reach(foot, other)
     return HalfSpaces(reach.normals @ rotation(other_yaw).T, reach.offsets)
 
 

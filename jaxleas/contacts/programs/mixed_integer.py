@@ -5,10 +5,10 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.linear_program import Program, Rows
-from jaxleas.contacts.placement import Targets
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step
+from jaxleas.contacts.programs.linear_program import Program, Rows
+from jaxleas.contacts.programs.placement import Targets
+from jaxleas.contacts.programs.steps import INITIAL, Step
 
 Formulation = Literal["hull", "big_m"]
 LOOSER, SPARE = 1.5, 0.05
@@ -130,7 +130,7 @@ def _add_big_m(
 def add_step(
     problem: ContactProblem, step: Step, rows: Rows, begin: int, starts: np.ndarray
 ) -> None:
-    """Add A (p_m - p_o) <= b.
+    """Add A (p_m - p_o) <= b for each foot o that stands.
 
     Args:
         problem: the contact problem.
@@ -139,13 +139,13 @@ def add_step(
         begin: the column of p_m's first coordinate.
         starts: the same for every phase.
     """
-    blocks, bound = [(begin + np.arange(3), step.A)], step.b
-    if step.standing == INITIAL:
-        other = "RF" if step.foot == "LF" else "LF"
-        bound = bound + step.A @ problem.initial[other].position
-    else:
-        blocks.append((int(starts[step.standing]) + np.arange(3), -step.A))
-    rows.add(blocks, bound)
+    for link in step.links:
+        blocks, bound = [(begin + np.arange(3), link.A)], link.b
+        if link.standing == INITIAL:
+            bound = bound + link.A @ problem.initial[link.effector].position
+        else:
+            blocks.append((int(starts[link.standing]) + np.arange(3), -link.A))
+        rows.add(blocks, bound)
 
 
 def _add_targets(rows: Rows, starts: np.ndarray, targets: Targets) -> None:

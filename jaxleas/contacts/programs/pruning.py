@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import INITIAL, Step
+from jaxleas.contacts.programs.steps import INITIAL, Link, Step
 
 SAFETY = 1e-6
 """A surface goes only if a step to it would violate a half-space by more than this [m]."""
@@ -14,21 +14,25 @@ def prune(problem: ContactProblem, steps: list[Step]) -> list[tuple[str, ...]]:
     """Return the candidates of each phase that may take part in a plan.
 
     A pair of surfaces is impossible if one half-space of the step's polytope separates them; a
-    surface goes if it is in no possible pair with the phase before, then (backwards) after. An
-    empty tuple for phase k proves that phase k cannot be made.
+    surface goes if, for a foot that stands, it is in no possible pair with the phase in which that
+    one landed, then (backwards) after. An empty tuple for phase k proves that it cannot be made.
     """
-    pairs = [_possible_pairs(problem, steps, index) for index in range(len(steps))]
+    pairs = [
+        [_possible_pairs(problem, phase.candidates, link) for link in step.links]
+        for phase, step in zip(problem.phases, steps, strict=True)
+    ]
     alive: list[np.ndarray] = [np.ones(len(phase.candidates), bool) for phase in problem.phases]
     for index, step in enumerate(steps):
-        before = np.ones(1, bool) if step.standing == INITIAL else alive[step.standing]
-        alive[index] = np.any(pairs[index][before], axis=0)
+        for link, possible in zip(step.links, pairs[index], strict=True):
+            before = np.ones(1, bool) if link.standing == INITIAL else alive[link.standing]
+            alive[index] &= np.any(possible[before], axis=0)
         if not alive[index].any():
             break
     else:
         for index in reversed(range(len(steps))):
-            standing = steps[index].standing
-            if standing != INITIAL:
-                alive[standing] &= pairs[index][:, alive[index]].any(axis=1)
+            for link, possible in zip(steps[index].links, pairs[index], strict=True):
+                if link.standing != INITIAL:
+                    alive[link.standing] &= possible[:, alive[index]].any(axis=1)
     return [
         tuple(name for name, keep in zip(phase.candidates, kept, strict=True) if keep)
         for phase, kept in zip(problem.phases, alive, strict=True)
@@ -36,24 +40,22 @@ def prune(problem: ContactProblem, steps: list[Step]) -> list[tuple[str, ...]]:
 
 
 def _possible_pairs(
-    problem: ContactProblem, steps: list[Step], index: int
+    problem: ContactProblem, candidates: tuple[str, ...], link: Link
 ) -> Bool[np.ndarray, "before now"]:
     """Return which pairs of (surface stood on, surface stepped on) no half-space separates."""
-    step, phase = steps[index], problem.phases[index]
-    low_now, _ = _ranges(problem, phase.candidates, step)
-    if step.standing == INITIAL:
-        other = "RF" if step.foot == "LF" else "LF"
-        high_before = (step.A @ problem.initial[other].position)[None, :]
+    low_now, _ = _ranges(problem, candidates, link)
+    if link.standing == INITIAL:
+        high_before = (link.A @ problem.initial[link.effector].position)[None, :]
     else:
-        _, high_before = _ranges(problem, problem.phases[step.standing].candidates, step)
+        _, high_before = _ranges(problem, problem.phases[link.standing].candidates, link)
     least = low_now[None, :, :] - high_before[:, None, :]  # of each row over the pair
-    return np.all(least <= step.b + SAFETY, axis=-1)
+    return np.all(least <= link.b + SAFETY, axis=-1)
 
 
 def _ranges(
-    problem: ContactProblem, names: tuple[str, ...], step: Step
+    problem: ContactProblem, names: tuple[str, ...], link: Link
 ) -> tuple[np.ndarray, np.ndarray]:
     corners = [problem.surfaces[name].vertices for name in names]
     starts = np.cumsum([0, *(len(each) for each in corners)])[:-1]
-    along = np.concatenate(corners) @ step.A.T
+    along = np.concatenate(corners) @ link.A.T
     return np.minimum.reduceat(along, starts), np.maximum.reduceat(along, starts)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.linear_program import Outcome, Program, Rows, solve
-from jaxleas.contacts.mixed_integer import Candidates, add_step
-from jaxleas.contacts.placement import put_com
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.slack_weights import SlackWeights, slack_weights
-from jaxleas.contacts.steps import Step
+from jaxleas.contacts.programs.linear_program import Outcome, Program, Rows, solve
+from jaxleas.contacts.programs.mixed_integer import Candidates, add_step
+from jaxleas.contacts.programs.placement import put_com
+from jaxleas.contacts.programs.slack_weights import SlackWeights, slack_weights
+from jaxleas.contacts.programs.steps import Step
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,60 +1,59 @@
-"""MIP and SL1M as judges: guide path and scene -> contact problem -> verdict (T 5.2.3)."""
+"""Programs as judges: guide path and scene -> contact problem -> verdict (T 5.2.3)."""
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from jaxleas.contacts import (
-    ContactPlan,
-    ContactProblem,
-    PlannerError,
-    last_feasible_phase,
-    plan_mip,
-    plan_sl1m,
-    problem_from_guide,
-)
 from jaxleas.contacts.from_guide import (
-    BESIDE_ROOT,
     MOST_ASIDE,
     NoGroundError,
     kept_configurations,
+    problem_from_guide,
 )
-from jaxleas.labels.settings import MipSettings, Sl1mSettings
-from jaxleas.labels.verdict import Verdict, mean_step
+from jaxleas.contacts.plan import ContactPlan
+from jaxleas.contacts.planner import PlannerError, mean_step
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.programs.prefix import last_feasible_phase
+from jaxleas.contacts.programs.settings import PhaseSettings
+from jaxleas.contacts.reference import widest_reference
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.types import GuidePath, Verdict
 
-ROBOT = "talos"
+Program = Callable[[ContactProblem, float], ContactPlan]
+"""Plans a problem within a time limit [s], without looking for reasons."""
 
 
-def judge_by_phases(
-    scene: Scene, path: GuidePath, settings: MipSettings | Sl1mSettings, number: int = 0
+def judge_by_program(
+    asked: tuple[int, Scene, GuidePath], robot: str, settings: PhaseSettings, program: Program
 ) -> Verdict:
-    """Ask MIP or SL1M, whichever the settings are of, about one guide path.
+    """Ask a program about one guide path.
 
     Where there is no plan for the whole path, the last configuration reached is that of the last
     step of the longest prefix with a plan, found by dichotomic search. Standing beside the first
     configuration already reaches it.
 
     Args:
-        scene: to walk on.
-        path: the guide path.
-        settings: of the planner.
-        number: of the guide path, for the verdict.
+        asked: number of the guide path, scene to walk on, and the guide path.
+        robot: name of the robot.
+        settings: settings of the planner.
+        program: planner of contact problems.
 
     Raises:
         InputError: the guide path cannot be used.
     """
     begun = time.perf_counter()
-    problem, lost = _problem(_around(scene, path, settings.window), path, settings)
+    number, scene, path = asked
+    near = _around(robot, scene, path, settings.window)
+    problem, lost = _problem(robot, near, path, settings)
     if problem is None or len(path) == 1:
         steps = -1 if lost is not None and lost.phase < 0 else 0
         reason = "" if lost is None else str(lost)
         verdict = _verdict(number, path, settings, steps, begun, None, reason)
         return replace(verdict, success=not reason)
-    search = _Search(problem, settings, begun + settings.time_limit)
+    search = _Search(problem, program, begun, settings.time_limit)
     first = search.plan(len(problem))
     decided, reason = True, ""
     if first is None:
@@ -78,31 +77,22 @@ class _Search:
     """
 
     def __init__(
-        self, problem: ContactProblem, settings: MipSettings | Sl1mSettings, deadline: float
+        self, problem: ContactProblem, program: Program, begun: float, time_limit: float
     ) -> None:
-        self.problem, self.settings, self.deadline = problem, settings, deadline
+        self.problem, self.program = problem, program
+        self.deadline, self.time_limit = begun + time_limit, time_limit
         self.made, self.trouble = 0, ""
 
     def plan(self, phases: int) -> ContactPlan | None:
         """Plan for the first phases; None, with `trouble`, if that is not decided."""
-        settings, prefix = self.settings, self.problem.prefix(phases)
         left = max(self.deadline - time.perf_counter(), 1e-3)
         try:
-            if isinstance(settings, Sl1mSettings):
-                plan = plan_sl1m(
-                    prefix,
-                    max_combinations=settings.max_combinations,
-                    weights=settings.weights,
-                    time_limit=left,
-                    diagnose=False,
-                )
-            else:
-                plan = plan_mip(prefix, time_limit=left, diagnose=False)
+            plan = self.program(self.problem.prefix(phases), left)
         except PlannerError as error:
             self.trouble = f"the planner failed: {error}"
             return None
         if plan.status == "time_limit":
-            self.trouble = f"not decided within the time limit of {settings.time_limit:g} s"
+            self.trouble = f"not decided within the time limit of {self.time_limit:g} s"
             return None
         if plan.feasible:
             self.made = max(self.made, phases)
@@ -115,16 +105,16 @@ class _Search:
 
 
 def _problem(
-    scene: Scene, path: GuidePath, settings: MipSettings | Sl1mSettings
+    robot: str, scene: Scene, path: GuidePath, settings: PhaseSettings
 ) -> tuple[ContactProblem | None, NoGroundError | None]:
     """Return the problem of as much of the path as has ground, and what ends it before its end."""
     options = {
-        "robot": ROBOT,
+        "robot": robot,
         "model": settings.model,
         "every": settings.keep_every,
         "candidates": settings.candidates,
         "window": settings.window,
-        "first_foot": settings.first_foot,
+        "first_foot": _first_foot(robot, settings),
     }
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
@@ -137,11 +127,22 @@ def _problem(
         return problem_from_guide(path[: last + 1], scene, **options), error
 
 
-def _around(scene: Scene, path: GuidePath, window: float) -> Scene:
+def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
+    """Return the foot that moves first: of a robot without the default one, its first foot."""
+    names = [each.name for each in load_robot(robot).effectors]
+    return settings.first_foot if settings.first_foot in names or _is_set(settings) else None
+
+
+def _is_set(settings: PhaseSettings) -> bool:
+    return settings.first_foot != type(settings).model_fields["first_foot"].default
+
+
+def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     """Return the scene's surfaces that a foot can come near to on the way."""
-    legs = [limb.range_of_motion.vertices[:, :2] for limb in load_robot(ROBOT).limbs]
+    walker = load_robot(robot)
+    legs = [walker.limbs[index].range_of_motion.vertices[:, :2] for index in walker.feet]
     reach = max(float(np.linalg.norm(each, axis=1).max()) for each in legs)
-    reach = max(reach, window) + BESIDE_ROOT + MOST_ASIDE
+    reach = max(reach, window) + widest_reference(walker) + MOST_ASIDE
     places = np.asarray(path.position, dtype=np.float64)[:, :2]
     near = {}
     for name, vertices in scene.walkable.items():
@@ -162,7 +163,7 @@ def _reason(problem: ContactProblem, phase: int, plan: ContactPlan) -> str:
 def _verdict(
     number: int,
     path: GuidePath,
-    settings: MipSettings | Sl1mSettings,
+    settings: PhaseSettings,
     steps: int,
     begun: float,
     plan: ContactPlan | None,

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jaxleas.contacts.com import with_first_cuts
-from jaxleas.contacts.linear_program import Outcome, solve
-from jaxleas.contacts.mixed_integer import Formulation, assemble, chosen_surfaces
-from jaxleas.contacts.placement import Placement, Targets, place
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.pruning import prune
-from jaxleas.contacts.sl1m import search
-from jaxleas.contacts.steps import Family, Step, make_steps
+from jaxleas.contacts.programs.attempt import search
+from jaxleas.contacts.programs.com import with_first_cuts
+from jaxleas.contacts.programs.linear_program import Outcome, solve
+from jaxleas.contacts.programs.mixed_integer import Formulation, assemble, chosen_surfaces
+from jaxleas.contacts.programs.placement import Placement, Targets, place
+from jaxleas.contacts.programs.pruning import prune
+from jaxleas.contacts.programs.steps import Family, Step, make_steps
 
 SEARCH_SHARE = 0.8
 """Of the time left, for the search for surfaces at least cost; the rest is for the placement."""
@@ -102,4 +102,4 @@ def decide(
 
 def cuts_of(steps: list[Step]) -> int:
     """Return the number of rows of all steps."""
-    return sum(len(step.b) for step in steps)
+    return sum(step.size for step in steps)

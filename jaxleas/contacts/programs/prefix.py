@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from jaxleas.contacts.linear_program import Outcome
 from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.programs.linear_program import Outcome
 
 
 def last_feasible_phase(

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import Step, rotation
+from jaxleas.contacts.programs.steps import Step, rotation
 from jaxleas.geometry.polytopes import Polytope
 from jaxleas.types.errors import InputError
 
@@ -39,21 +39,17 @@ def with_first_cuts(problem: ContactProblem, steps: list[Step], count: int) -> l
 
 def foot_yaws(problem: ContactProblem, steps: list[Step]) -> list[tuple[float, float]]:
     """Return the yaws [rad] of the standing and of the landing foot in each phase."""
-    yaws = []
-    for step, phase in zip(steps, problem.phases, strict=True):
-        other = "RF" if step.foot == "LF" else "LF"
-        before = problem.initial[other] if step.standing < 0 else problem.phases[step.standing]
-        yaws.append((before.yaw, phase.yaw))
-    return yaws
+    phases = zip(steps, problem.phases, strict=True)
+    return [(step.link.yaw, phase.yaw) for step, phase in phases]
 
 
 def _first_cuts(
     problem: ContactProblem, step: Step, standing_yaw: float, yaw: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    other = "RF" if step.foot == "LF" else "LF"
+    other = step.link.effector
     directions = _directions()  # in the standing foot's frame
     turned = -directions @ rotation(yaw - standing_yaw)  # in the landing foot's
-    reach = problem.polytopes.foot_corners[other]
+    reach = problem.polytopes.reach(step.foot, other).vertices
     far = (directions @ reach.T).max(axis=1)
     kept_normals, kept_bounds = [], []
     for over in (0, 1):

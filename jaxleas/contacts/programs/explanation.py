@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jaxleas.contacts.decision import decide
-from jaxleas.contacts.linear_program import Outcome
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.steps import Family
+from jaxleas.contacts.programs.decision import decide
+from jaxleas.contacts.programs.linear_program import Outcome
+from jaxleas.contacts.programs.steps import Family
 from jaxleas.contacts.surfaces import ContactSurface
 
 WORDS = {

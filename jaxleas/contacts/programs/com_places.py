@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
-from jaxleas.contacts.linear_program import Program, solve
-from jaxleas.contacts.steps import Step
+from jaxleas.contacts.programs.linear_program import Program, solve
+from jaxleas.contacts.programs.steps import Step
 from jaxleas.dynamics.small_lp import maximise
 
 FITS = 1e-7

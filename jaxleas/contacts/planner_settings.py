@@ -1,0 +1,78 @@
+"""A planner's settings: chosen from what was given, and checked."""
+
+from collections.abc import Callable
+from typing import Any
+
+from pydantic import ValidationError
+
+from jaxleas.configuration.strict import Strict
+from jaxleas.contacts.planner import Planner
+from jaxleas.contacts.registry import PLANNERS, find_planner
+from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.types.errors import InputError
+
+
+def require_settings(planner: Planner, settings: PlannerSettings | None) -> PlannerSettings:
+    """Return the settings given, if they are the planner's own, or the planner's defaults.
+
+    Raises:
+        InputError: the settings are another planner's.
+    """
+    kind = planner.settings
+    if settings is None:
+        return kind()
+    if type(settings) is not kind:
+        raise InputError(
+            f"the {planner.name} planner takes {kind.__name__}, not {type(settings).__name__}"
+        )
+    return settings
+
+
+def settings_from(planner: Planner | str, **given: Any) -> Any:
+    """Return the settings that a planner judges by; None means its own default.
+
+    Args:
+        planner: planner, or name of a built-in one.
+        given: settings by name.
+
+    Raises:
+        InputError: the planner has no such setting, or the value is out of range.
+    """
+    found = find_planner(planner) if isinstance(planner, str) else planner
+    return _made(found.name, found.settings, given, lambda each: each.settings)
+
+
+def plan_settings_from(planner: Planner, **given: Any) -> Any:
+    """Return the settings of a single plan; None means the planner's own default.
+
+    Args:
+        planner: planner that will plan.
+        given: settings by name.
+
+    Raises:
+        InputError: the planner has no such setting, or the value is out of range.
+    """
+    return _made(planner.name, planner.plan_settings, given, lambda each: each.plan_settings)
+
+
+def _made(
+    name: str, kind: type[Strict], given: dict[str, Any], kind_of: Callable[[Planner], type[Strict]]
+) -> Strict:
+    chosen = {field: value for field, value in given.items() if value is not None}
+    unknown = next((field for field in chosen if field not in kind.model_fields), None)
+    if unknown is not None:
+        planners = map(find_planner, PLANNERS)
+        owners = [each.name for each in planners if unknown in kind_of(each).model_fields]
+        if owners:
+            option = unknown.replace("_", "-")
+            raise InputError(
+                f"--{option} is for the planner {' and '.join(owners)}, not for {name}"
+            )
+        known = ", ".join(kind.model_fields) or "none"
+        raise InputError(f"{name} has no setting {unknown}; it has {known}")
+    try:
+        return kind(**chosen)
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise InputError(f"--{option} {first['input']}: {first['msg'].lower()}") from error

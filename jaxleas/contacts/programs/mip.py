@@ -1,0 +1,101 @@
+"""The mixed-integer planner: exact."""
+
+import math
+import time
+
+import numpy as np
+
+from jaxleas.contacts.plan import ContactPlan
+from jaxleas.contacts.planner import AskedGuides, Planner, PlannerError, require_time_limit
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.programs.answers import certified, diagnosed, late
+from jaxleas.contacts.programs.decision import decide
+from jaxleas.contacts.programs.judging import judge_by_program
+from jaxleas.contacts.programs.mixed_integer import Formulation
+from jaxleas.contacts.programs.placement import Targets
+from jaxleas.contacts.programs.settings import Cost, MipPlanSettings, MipSettings
+from jaxleas.contacts.reference import reference_foothold
+from jaxleas.robots import load_robot
+from jaxleas.types import Verdict
+from jaxleas.types.errors import InputError
+
+
+class Mip(Planner):
+    """The mixed-integer planner in the registry."""
+
+    title = "MIP"
+    settings = MipSettings
+    plan_settings = MipPlanSettings
+    needs = "problem"
+
+    def plan(
+        self,
+        asked: ContactProblem,
+        settings: MipPlanSettings,
+        *,
+        time_limit: float,
+        diagnose: bool = True,
+    ) -> ContactPlan:
+        """Plan contacts for one problem."""
+        return plan_mip(asked, cost=settings.cost, time_limit=time_limit, diagnose=diagnose)
+
+    def judge(self, asked: AskedGuides, settings: MipSettings) -> list[Verdict]:
+        """Judge guide paths one after the other."""
+
+        def plan(prefix: ContactProblem, time_limit: float) -> ContactPlan:
+            return plan_mip(prefix, time_limit=time_limit, diagnose=False)
+
+        return [judge_by_program(each, asked.robot, settings, plan) for each in asked]
+
+
+def plan_mip(
+    problem: ContactProblem,
+    *,
+    cost: Cost = "none",
+    time_limit: float = math.inf,
+    diagnose: bool = True,
+    formulation: Formulation = "big_m",
+    start: bool = True,
+) -> ContactPlan:
+    """Plan by mixed-integer programming (T 5.2, app. B): exact, "infeasible" is a proof.
+
+    Args:
+        problem: the contact problem; `problem.without_guide()` for contact-before-motion.
+        cost: "none": any plan, with distance to spare; else footholds near the reference ones
+            beside the guide's root, by L1 or squared distance [m]; needs a root in each phase.
+        time_limit: [s]; when it is over, the plan's status says "time_limit".
+        diagnose: for an infeasible problem, find the last feasible phase and the reason.
+        formulation: "big_m" (T 5.3, 5.4), or "hull", slower but without any big-M.
+        start: try SL1M's first combinations before the mixed-integer program: sooner, as exact.
+
+    Raises:
+        InputError: a cost is asked for, but the phases have no root.
+        PlannerError: a bug of ours.
+    """
+    require_time_limit(time_limit)
+    begin = time.perf_counter()
+    deadline = begin + time_limit
+    targets = None if cost == "none" else _reference_footholds(problem, cost)
+    decision = decide(problem, deadline, formulation, targets, start=start)
+    seconds = time.perf_counter() - begin
+    if decision.placement is not None:
+        return certified("mip", problem, decision.surfaces, decision.placement, seconds)
+    if decision.outcome == "time_limit":
+        return late("mip", seconds, time_limit)
+    if decision.outcome == "failed":
+        raise PlannerError("the mixed-integer solver gave no answer")
+    plan = ContactPlan("mip", False, "infeasible", "no choice of surfaces works", seconds=seconds)
+    if not diagnose:
+        return plan
+    judge = lambda prefix: decide(prefix, deadline, formulation).outcome  # noqa: E731
+    plan = diagnosed(plan, problem, judge, decision.dead_phase, deadline, exact=True)
+    return plan.but(seconds=time.perf_counter() - begin)
+
+
+def _reference_footholds(problem: ContactProblem, cost: Cost) -> Targets:
+    robot, points = load_robot(problem.robot), []
+    for index, phase in enumerate(problem.phases):
+        if phase.root is None:
+            raise InputError(f"phase {index} has no root, which a cost needs: ask for cost 'none'")
+        points.append(reference_foothold(robot, phase.foot, phase.root, phase.yaw)[:2])
+    return Targets(np.array(points), "quadratic" if cost == "quadratic" else "linear")

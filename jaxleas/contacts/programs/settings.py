@@ -1,0 +1,58 @@
+"""What the programs can be told: how a guide becomes a problem, and how one problem is planned."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
+
+from jaxleas.configuration.strict import Strict
+from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
+from jaxleas.contacts.problem import Model
+from jaxleas.contacts.programs.attempt import MAX_COMBINATIONS
+from jaxleas.contacts.programs.slack_weights import SlackWeights
+from jaxleas.contacts.settings import PlannerSettings
+
+Cost = Literal["none", "linear", "quadratic"]
+
+
+class PhaseSettings(PlannerSettings):
+    """How a guide path becomes a contact problem (T 5.2.3), and how long a planner may take."""
+
+    keep_every: PositiveInt = EVERY
+    """one guide configuration in so many becomes a step, N_ref"""
+    model: Model = "two_com"
+    """two_com (with the centre of mass) or feet"""
+    candidates: Candidates = "window"
+    """surfaces in a window around the root, or in the moving leg's range of motion"""
+    window: Annotated[float, Field(gt=0.0, lt=100.0)] = WINDOW
+    """edge of the window [m]"""
+    first_foot: str = "LF"
+    """which moves first; robots without a foot LF begin with their first one by default"""
+    time_limit: PositiveFloat = 60.0
+    """for one guide path [s]; when it is over, the verdict is undecided"""
+
+
+class MipSettings(PhaseSettings):
+    """Settings of the mixed-integer planner."""
+
+
+class Sl1mSettings(PhaseSettings):
+    """Settings of SL1M."""
+
+    max_combinations: NonNegativeInt = MAX_COMBINATIONS
+    """of surfaces for the undecided steps, after which it gives up; 0: without that heuristics"""
+    weights: SlackWeights = "uniform"
+    """of the slacks: uniform, as published, or guide: the guide path chooses among surfaces"""
+
+
+class MipPlanSettings(Strict):
+    """Settings of one plan by the mixed-integer planner."""
+
+    cost: Cost = "none"
+    """footholds near the guide's reference ones, by L1 or squared distance"""
+
+
+class Sl1mPlanSettings(Strict):
+    """Settings of one plan by SL1M."""
+
+    max_combinations: NonNegativeInt = MAX_COMBINATIONS
+    """of surfaces for the undecided steps, after which it gives up"""

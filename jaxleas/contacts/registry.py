@@ -1,0 +1,104 @@
+"""The one place where contact planners are named."""
+
+import re
+from collections.abc import Collection
+from pathlib import Path
+from typing import Annotated, Any
+
+from jaxleas.configuration.registry import Registry, is_own
+from jaxleas.contacts.own_planner import JudgedByOwn, OwnPlanner
+from jaxleas.contacts.planner import Measure, Planner
+from jaxleas.types.errors import InputError
+
+
+def _require_planner(name: str, item: Any) -> None:
+    if not (isinstance(item, type) and issubclass(item, OwnPlanner | Planner)):
+        raise InputError(
+            f"{name} is no planner: derive a class from jaxleas.labels.OwnPlanner and give it"
+            " judge(scene, path)"
+        )
+
+
+PLANNERS: Registry[type[Planner] | type[OwnPlanner]] = Registry(
+    "planner",
+    {
+        "sampling": "jaxleas.contacts.sampling_planner:Sampling",
+        "mip": "jaxleas.contacts.programs.mip:Mip",
+        "sl1m": "jaxleas.contacts.programs.sl1m:Sl1m",
+    },
+    _require_planner,
+)
+DEFAULT_JUDGE = "sampling"
+"""Judges guide paths unless another planner is asked for."""
+DEFAULT_PLANNER = "mip"
+"""Plans single problems and guide paths unless another is asked for."""
+PlannerName = Annotated[str, PLANNERS]
+"""Type of a command's option: its help lists the planners."""
+
+
+def find_planner(name: str, allow: Collection[str] = ()) -> Planner:
+    """Return the planner of that name.
+
+    Args:
+        name: name of a planner, or MODULE:CLASS of the user's own.
+        allow: each MODULE:CLASS that a person has named on a command line or in a call; what only
+            a file names is never imported.
+
+    Raises:
+        InputError: there is no such planner, or its code may not be run.
+    """
+    kind = PLANNERS.find(name, allow)
+    return JudgedByOwn(name, kind) if issubclass(kind, OwnPlanner) else kind(name)
+
+
+def title_of(name: str) -> str:
+    """Return a planner's title; a planner of the user's own, which may be gone, is its name."""
+    return (find_planner(name).title if name in PLANNERS else "") or name
+
+
+def measures_of(name: str) -> frozenset[Measure]:
+    """Return what a planner reports of itself; of the user's own, which may be gone, nothing."""
+    return find_planner(name).measures if name in PLANNERS else frozenset()
+
+
+def permit(config: Path, planner: str, said: str | None) -> tuple[str, ...]:
+    """Return what may be imported for a planner that a file asks for.
+
+    Args:
+        config: the file.
+        planner: name of the planner that it asks for.
+        said: name given on the command line, if any.
+
+    Raises:
+        InputError: the planner is code and was not said, or something else was said.
+    """
+    if said is None and is_own(planner):
+        raise InputError(
+            f"{config} asks for the planner {planner}, which is code: if you trust it, give"
+            f" --planner {planner} as well"
+        )
+    if said is not None and said != planner:
+        raise InputError(f"{config} asks for the planner {planner}, not for {said}")
+    return () if said is None else (said,)
+
+
+def require_planner_name(name: str) -> str:
+    """Return a name that may be a planner's; for configurations, whose code is asked for later.
+
+    Raises:
+        ValueError: no planner can be called so.
+    """
+    if name in PLANNERS or re.fullmatch(r"[\w.]+:\w+", name):
+        return name
+    raise ValueError(f"there is no planner {name!r}{PLANNERS.hint(name)}")
+
+
+def require_built_in(name: str) -> str:
+    """Return the name of a planner that needs no permission.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if name not in PLANNERS:
+        raise ValueError(f"there is no planner {name!r} here; there are {', '.join(PLANNERS)}")
+    return name

@@ -1,0 +1,32 @@
+"""An exact planner as it is asked: by name, with settings, for a robot."""
+
+from dataclasses import dataclass
+
+from jaxleas.contacts.planner import DEFAULT_ROBOT, Planner
+from jaxleas.contacts.planner_settings import require_settings
+from jaxleas.contacts.registry import find_planner
+from jaxleas.contacts.settings import PlannerSettings
+
+
+@dataclass(frozen=True)
+class Oracle:
+    """Whom to ask about guide paths.
+
+    Attributes:
+        planner: name of a planner, or MODULE:CLASS of your own, which asking imports.
+        settings: settings of the planner; its defaults if None.
+        robot: name of the robot.
+    """
+
+    planner: str
+    settings: PlannerSettings | None = None
+    robot: str = DEFAULT_ROBOT
+
+    def find(self) -> tuple[Planner, PlannerSettings]:
+        """Return the planner and its settings.
+
+        Raises:
+            InputError: there is no such planner, or the settings are another's.
+        """
+        found = find_planner(self.planner, [self.planner])
+        return found, require_settings(found, self.settings)
