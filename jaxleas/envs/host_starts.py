@@ -63,7 +63,7 @@ class HostPool:
         """Give a fresh start to the robots whose episode is over; leave the others alone.
 
         Args:
-            done: which episodes are over.
+            done: whether each episode is over.
             state: state of the episodes.
             pick: index of the candidate that each robot would get.
         """

@@ -61,7 +61,7 @@ def restart_where(
     """Give a fresh start to the robots whose episode is over; leave the others alone.
 
     Args:
-        done: which episodes are over.
+        done: whether each episode is over.
         state: state of the episodes.
         pool: fresh starts.
         pick: index of the candidate that each robot would get (`draw_picks`).

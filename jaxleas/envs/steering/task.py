@@ -79,7 +79,7 @@ class Steering(Task):
         Terrain files are used for training, too, but never for the examination.
 
         Arenas of the examination have no boxes, and crossings only: every goal can be reached, so
-        that the score has room to the top and the best policy can be told from the second best.
+        that the score has room to the top and the best policy can be distinguished from the second.
 
         Raises:
             InputError: no arena has a link to cross.
