@@ -26,7 +26,7 @@ class Dimension(Strict):
     """Values of which one is drawn."""
     only_when: dict[str, JsonValue] = Field(default_factory=dict)
     """Condition under which it is drawn: the fields named here, listed earlier in the space, have
-    these values (or one of a list of values); otherwise the field keeps the base configuration's value."""
+    these values (or one of a list of values); otherwise it keeps the base configuration's value."""
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -124,12 +124,12 @@ class Study:
         Raises:
             InputError: the storage holds a value that is not a result.
         """
-        told = [
+        reported = [
             typed(TrialResult, each.user_attrs[RESULT], f"trial {each.number} of the storage")
             for each in self._study.get_trials(deepcopy=False)
             if each.state.is_finished() and RESULT in each.user_attrs
         ]
-        return sorted(told, key=lambda result: result.number)
+        return sorted(reported, key=lambda result: result.number)
 
     def importance(self) -> dict[str, float]:
         """Return the importance of each searched field for the first objective, by PED-ANOVA.
