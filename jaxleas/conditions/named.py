@@ -47,7 +47,7 @@ def _require_known(named: tuple[Named, ...]) -> tuple[Named, ...]:
             raise ValueError(f"there is no condition {name!r}{CONDITIONS.hint(name)}")
     if not names:
         raise ValueError(
-            f"a configuration must be judged by itself, too: give {', '.join(STANDARD)} beside it"
+            f"a configuration must be judged by itself, too: give {', '.join(STANDARD)} as well"
         )
     if len(named) - len(names) > 1:
         raise ValueError("it names two surrogates, and an episode can follow one: leave one out")

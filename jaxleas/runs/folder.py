@@ -157,8 +157,8 @@ def _require_vacant(path: Path) -> None:
         _take_lock(path).close()  # "in use" says more than "exists already"
     if {entry.name for entry in path.iterdir()} - {"lock"}:
         raise InputError(
-            f"{path} exists already and is not empty; go on with --resume {path}, or name another "
-            "--run-dir"
+            f"{path} exists already and is not empty; continue with --resume {path}, or name"
+            " another --run-dir"
         )
 
 
@@ -181,6 +181,6 @@ def _require_run(path: Path, needs_checkpoint: bool) -> None:
         )
     if needs_checkpoint and not any((path / "checkpoints").glob("step_*.npz")):
         raise InputError(
-            f"the run folder {path} is half-written: it has no checkpoint yet; go on with "
+            f"the run folder {path} is half-written: it has no checkpoint yet; continue with "
             f"train.py --resume {path}"
         )

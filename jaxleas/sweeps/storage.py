@@ -96,7 +96,7 @@ def _proxy(optuna: Any, where: str) -> Any:
         raise InputError(f"--storage {where} needs grpcio: pip install 'jaxleas[sweep]'") from error
     except Exception as error:
         raise InputError(
-            f"--storage {where} cannot be reached: nobody answered within {SECONDS:.0f} s"
+            f"--storage {where} cannot be reached: no answer within {SECONDS:.0f} s"
         ) from error
     return proxy
 

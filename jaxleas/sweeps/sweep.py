@@ -44,7 +44,7 @@ def run_sweep(
 
     Raises:
         InputError: sweep, folder, storage or workers cannot be used.
-        InterruptedSweepError: a signal asked to stop; the same call goes on.
+        InterruptedSweepError: a signal asked to stop; the same call continues.
     """
     require_optuna()
     sweep = sweep if isinstance(sweep, Sweep) else open_sweep(sweep)

@@ -33,7 +33,7 @@ def read_triangles(
     if up not in AXES:
         raise InputError(f"up is '{up}'; it must be one of x, y, z")
     if not 0.0 < scale < np.inf:
-        raise InputError(f"scale {scale:g} must be a positive number of metres a unit")
+        raise InputError(f"scale {scale:g} must be a positive number of metres per unit")
     if Path(path).suffix.lower() not in SUFFIXES:
         raise InputError(f"{path} is not a mesh this package reads: {', '.join(SUFFIXES)}")
     with np.errstate(over="ignore", invalid="ignore"):  # refused below

@@ -166,8 +166,9 @@ def _require_even(count: int, ppo: PpoConfig) -> None:
         fitting = [number for number in range(1, count) if robots % number == 0]
         raise InputError(
             f"{count} devices cannot share the robots evenly: ppo.environments ="
-            f" {ppo.environments} in ppo.minibatches = {ppo.minibatches} are {robots} a minibatch,"
-            f" no multiple of {count}; --devices {fitting[-1]} would do, or other numbers of these"
+            f" {ppo.environments} in ppo.minibatches = {ppo.minibatches} are {robots} per"
+            f" minibatch, no multiple of {count}; --devices {fitting[-1]} would do, or other"
+            " numbers of these"
         )
 
 

@@ -262,7 +262,7 @@ class _Recorder:
             }
             last = update == rows[-1][0]
             self.log.append(update * batch, numbers | (fractions if last else {}))
-        shown = {"return": f"{float(rows[-1][1]['walk/reward']):.3f} a step"}
+        shown = {"return": f"{float(rows[-1][1]['walk/reward']):.3f} per step"}
         if fractions:
             shown["held out"] = f"{100 * fractions['held_out/reached']:.1f} %"
         self.progress.update(rows[-1][0] * batch, shown)

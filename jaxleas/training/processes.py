@@ -86,7 +86,7 @@ def _parse_process(process: str | None) -> tuple[int, int]:
     if not (slash and index.isdecimal() and count.isdecimal() and int(index) < int(count)):
         given = "is missing" if process is None else f"{process} is not understood"
         raise InputError(
-            f"--process {given}: --process 0/2 beside --coordinator HOST:PORT is the first of two"
+            f"--process {given}: --process 0/2 with --coordinator HOST:PORT is the first of two"
         )
     return int(index), int(count)
 

@@ -108,7 +108,7 @@ class _Seat:
                 self._gone = True
                 reason = " ".join(str(error).split())[:200] or type(error).__name__
                 self._say(
-                    f"{self.name} failed and receives nothing more: {reason} (training goes on,"
+                    f"{self.name} failed and receives nothing more: {reason} (training continues,"
                     " metrics.jsonl holds every row)"
                 )
                 return
