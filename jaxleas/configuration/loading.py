@@ -40,8 +40,8 @@ def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] =
             is among them, all fields are printed and the program ends.
 
     Raises:
-        InputError: one sentence that names the file (or the command line), the key, what was
-            given, and what would do.
+        InputError: the configuration is invalid; one sentence names the file (or the command
+            line), the key, what was given, and what would do.
     """
     return load_layers(model, layers_of(path), overrides)
 
@@ -150,7 +150,7 @@ def validate(model: type[Model], layers: Layers) -> Model:
     """Return the configuration that layers state together, given the weakest first.
 
     Raises:
-        InputError: one sentence that names the layer, the key, and what would do.
+        InputError: the value is invalid; the message names the layer, the key, and what would do.
     """
     layers = [(label, with_present_names(model, layer, label)) for label, layer in layers]
     stated: dict[str, Any] = {}

@@ -119,7 +119,7 @@ class StepResult:
 
 @dataclass(frozen=True)
 class Examination:
-    """How success is measured during training, on worlds that are never trained on.
+    """The measure of success during training, on worlds that are never trained on.
 
     Attributes:
         starts: number of episodes; each is walked by the deterministic policy until it reaches its

@@ -68,7 +68,7 @@ def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
         allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the file, the key, and what would do.
+        InputError: the value is invalid; the message names the file, the key, and what would do.
     """
     path = Path(path)
     config = load_config(SweepConfig, path)

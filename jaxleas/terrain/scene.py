@@ -25,7 +25,7 @@ VERSION = 1
 MAX_CORNERS = 10_000_000
 KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas", "touch")
 Touch = Literal["feet", "palms", "both"]
-"""Who may touch a surface."""
+"""Kinds of effectors that may touch a surface."""
 Polygons = dict[str, Float[np.ndarray, "V 3"]]
 
 

@@ -20,7 +20,7 @@ from jaxleas.training.networks import ActorCritic
 
 @struct.dataclass
 class Experience:
-    """What was walked, or a minibatch of it.
+    """The experience of a roll-out, or a minibatch of it.
 
     Attributes:
         observation: observation before each step [physical units].

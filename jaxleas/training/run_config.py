@@ -24,8 +24,8 @@ def load_run_config(
         allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the file (or the command line), the key, what was
-            given, and what would do.
+        InputError: the configuration is invalid; one sentence names the file (or the command
+            line), the key, what was given, and what would do.
     """
     layers = layers_of(path)
     stated = [("command line", _stated_task(overrides)), *reversed(layers)]
@@ -41,7 +41,7 @@ def parse_run_config(document: Any, source: str, allow: Collection[str] = ()) ->
         allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the source, the key, and what would do.
+        InputError: the value is invalid; the message names the source, the key, and what would do.
     """
     layers = [(source, document if isinstance(document, dict) else {})]
     return validate(_model(layers, allow), layers)

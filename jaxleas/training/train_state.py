@@ -1,4 +1,4 @@
-"""Everything a training run is, in one pytree: what a checkpoint saves and a resume restores."""
+"""The whole state of a training run in one pytree, which checkpoints save and resuming restores."""
 
 from typing import Any
 
@@ -48,7 +48,7 @@ class TrainState:
 
 @struct.dataclass
 class Learned:
-    """What a run has learned, from which another run can begin.
+    """The learned networks of a run, from which another run can begin.
 
     Attributes:
         params: parameters of actor and critic.

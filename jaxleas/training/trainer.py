@@ -22,7 +22,7 @@ from jaxleas.types import InputError
 
 @dataclass
 class Trainer:
-    """What one training needs, made once.
+    """The pieces that one training needs, made once.
 
     Attributes:
         config: configuration of the run.

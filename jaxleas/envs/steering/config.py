@@ -57,7 +57,7 @@ class RewardWeights(Strict):
 
 
 class LinkShares(Strict):
-    """How often an episode begins at a link of each kind, relative to the others.
+    """Relative frequencies at which an episode begins at a link of each kind.
 
     Drawn uniformly, half of the links would be level ground, and one in ten a narrow bridge, which
     takes the longest to learn.

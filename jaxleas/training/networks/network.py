@@ -1,4 +1,4 @@
-"""What a network is: one vector in, one out, in training, judged, as arrays and as ONNX nodes."""
+"""The protocol of a network from vector to vector: in training, judged, as arrays, as ONNX."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
