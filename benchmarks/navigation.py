@@ -22,7 +22,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.files import atomic_path
-from jaxleas.guide.commands import Steering, steering_named
+from jaxleas.guide.commands import steering_named
 from jaxleas.guide.loading import load_policy, policy_file
 from jaxleas.guide.navigation_command import make_navigator, start_motion
 from jaxleas.guide.picture import PATH
@@ -31,7 +31,7 @@ from jaxleas.guide.roadmaps.exact import scene_of
 from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.seeds import EVALUATION_SEED
 
-METHODS: dict[str, Steering] = {"leas_p1": "leas", "rb_kino": "kino"}
+METHODS: dict[str, str] = {"leas_p1": "leas", "rb_kino": "kino"}
 TITLES = {"leas_p1": "LEAS", "rb_kino": "RB-Kino"}
 COLOURS = {"leas_p1": PATH, "rb_kino": "tab:orange"}
 CLEARANCE = 0.3

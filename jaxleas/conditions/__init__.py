@@ -1,4 +1,4 @@
-"""What a valid configuration is: reachability, collision, and how conditions combine."""
+"""Conditions of a valid configuration: reachability, collision, and their combinations."""
 
 from jaxleas.conditions.collision import Collision, collision
 from jaxleas.conditions.condition import (

@@ -1,4 +1,4 @@
-"""The conditions there are, by name, and what a configuration's names stand for."""
+"""The conditions by name, and how a configuration's names become conditions."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from jaxleas.conditions.named import Named
 
 SURROGATE = "surrogate"
-KEY = "env.conditions"  # what errors call the place where conditions are named
+KEY = "env.conditions"  # name of the configuration field, for messages
 
 
 def _require_callable(name: str, item: Any) -> None:
@@ -40,16 +40,16 @@ CONDITIONS: Registry[Callable[..., Any]] = Registry(
     },
     _require_callable,
 )
-"""Each but the surrogate is called with the robot and the points that are sampled anyway."""
+"""Each, except the surrogate, is called with the robot and the points that are sampled anyway."""
 
 
 @dataclass(frozen=True)
 class Judges:
-    """What ends an episode.
+    """The conditions that end an episode.
 
     Attributes:
-        condition: least margin of all conditions.
-        foresight: condition with memory; None: nothing is foreseen.
+        condition: condition with the smallest margin of all conditions.
+        foresight: condition with memory; None: there is no such condition.
     """
 
     condition: Condition
@@ -63,19 +63,20 @@ def make_judges(
     env: Any,
     allow: Collection[str] = (),
 ) -> Judges:
-    """Return what a configuration's conditions stand for.
+    """Return the conditions that a configuration names.
 
     Args:
-        named: conditions by name.
+        named: names of the conditions.
         robot: robot that is judged.
         candidates: points in the root frame whose heights are sampled anyway [m]; conditions
-            choose from them, or state others.
+            select from them, or state others.
         env: configuration of the environment, which a surrogate must fit.
-        allow: each MODULE:CLASS that a person has named; code that only a file names is never run.
+        allow: user's own code that may be run, as MODULE:CLASS; code that only a file names is
+            never run.
 
     Raises:
-        InputError: one sentence with the key: a name is unknown, code may not be run or makes no
-            condition, a surrogate's file is missing or is for another robot.
+        InputError: a name is unknown, code may not be run or makes no condition, or a surrogate's
+            file is missing or is for another robot; one sentence names the key.
     """
     made = [_make(each, robot, candidates, env, allow) for each in named]
     foresights = [each for each in made if _foresees(each)]
@@ -109,7 +110,7 @@ def _foresees(judge: Any) -> bool:
 
 
 def _require_condition(name: str, made: Any) -> None:
-    """Refuse what an own class makes if it cannot judge."""
+    """Refuse the result of the user's own class if it is not a condition."""
     points = stated_points(made)
     if not callable(made) or points is None:
         missing = "points_in_root" if callable(made) else "__call__(heights_in_root, motion)"

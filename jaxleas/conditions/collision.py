@@ -14,7 +14,7 @@ from jaxleas.conditions.points import columns_of
 from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 
-_TOLERANCE = 1e-6  # [m]: points on a box's edge count as under it
+_TOLERANCE = 1e-6  # points on a box's edge count as under it [m]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -22,12 +22,13 @@ class Collision:
     """C: the ground under every point stays below the trunk.
 
     With bottom_i the underside of the lowest trunk box over point i, the margin is
-    min_i (bottom_i - height_i)  (T eq. 3.5), in metres. A single-layer map cannot tell ground
-    inside the trunk from a ceiling above it: both are collisions. No ground, no collision.
+    min_i (bottom_i - height_i)  (T eq. 3.5), in metres. A single-layer map cannot distinguish
+    ground inside the trunk from a ceiling above it: both are collisions. Without ground there is no
+    collision.
 
     Attributes:
         points_in_root: points under the trunk [m].
-        bottoms: index of each, and the underside over it [m].
+        bottoms: index of each point, and height of the underside over it [m].
     """
 
     points_in_root: Float[np.ndarray, "P 2"]
@@ -36,7 +37,7 @@ class Collision:
     def __init__(
         self, robot: Robot, candidates: Float[np.ndarray, "C 2"], padding: float = 0.0
     ) -> None:
-        """Keep those of the candidates that lie under the trunk.
+        """Keep the candidates that lie under the trunk.
 
         Args:
             robot: robot whose trunk must be free.
@@ -62,14 +63,14 @@ class Collision:
     def __call__(
         self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
     ) -> Float[Array, "*batch"]:
-        """Return the margin [m]."""
+        """Return the margin of the condition [m]."""
         del motion
-        # One term a point: see reachability.
+        # One term per point: see reachability.
         margins = [bottom - heights_in_root[..., index] for index, bottom in self.bottoms]
         return jnp.clip(reduce(jnp.minimum, margins), -MARGIN_LIMIT, MARGIN_LIMIT)
 
     def read_from(self, points: Float[np.ndarray, "Q 2"]) -> Self:
-        """Return the same condition for the heights at more points."""
+        """Return the same condition for the heights at further points."""
         columns = columns_of(self.points_in_root, points)
         moved = object.__new__(type(self))
         bottoms = tuple((int(columns[index]), bottom) for index, bottom in self.bottoms)
@@ -78,7 +79,7 @@ class Collision:
 
 
 def collision(robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0.0) -> Condition:
-    """Return C for the heights at all of `points`, those that do not matter to it included.
+    """Return C for the heights at all of `points`, including those that it does not need.
 
     Args:
         robot: robot whose trunk must be free.
@@ -94,7 +95,7 @@ def collision(robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0
 def trunk_bottoms(
     robot: Robot, points: Float[np.ndarray, "P 2"], padding: float = 0.0
 ) -> Float[np.ndarray, " P"]:
-    """Return the underside of the lowest trunk box over each point [m], infinity where none is."""
+    """Return the underside of the lowest trunk box over each point [m]; infinity for no box."""
     bottoms = np.full(len(points), np.inf)
     for box in robot.trunk:
         low, high = np.asarray(box.low[:2]), np.asarray(box.high[:2])

@@ -1,4 +1,4 @@
-"""What a condition is: the points it reads, and their heights and a root motion to a margin."""
+"""The protocol of a condition: points to read, and a margin from their heights and a motion."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ VOID_IN_ROOT = NO_GROUND_IN_ROOT
 """Height in the root frame [m] at or below which there is no ground."""
 
 MARGIN_LIMIT = 1.0
-"""Margins are clipped to +- this [m]: always finite, even over the void."""
+"""Bound to which margins are clipped, +- [m]: they are finite even over the void."""
 
 Judge = Callable[[Array, RootMotion], Array]
-"""Heights [*batch, P] and a root motion to a margin [*batch]; says nothing of its points. Such a
-callable is a condition of the older kind: it reads the heights at all points there are."""
+"""A function from heights [*batch, P] and a root motion to a margin [*batch], without its points.
+Such a callable is a condition of the older kind: it reads the heights at all points."""
 
 
 class Condition(Protocol):
-    """Anything that judges a configuration: an analytic condition or one of the user's own."""
+    """A condition on a configuration: an analytic one or the user's own."""
 
     @property
     def points_in_root(self) -> Points:
@@ -40,7 +40,7 @@ class Condition(Protocol):
         Args:
             heights_in_root: height of the terrain under each point minus the root's z [m];
                 `VOID_IN_ROOT` or less where there is no ground.
-            motion: root motion; the analytic conditions pass over it.
+            motion: root motion, which the analytic conditions ignore.
 
         Returns:
             Margin [m], clipped to +- `MARGIN_LIMIT`.
@@ -50,11 +50,11 @@ class Condition(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class OnPoints:
-    """A callable as a condition: it reads the heights at the points stated with it.
+    """A callable as a condition, which reads the heights at given points.
 
     Attributes:
         points_in_root: points in the root frame [m].
-        judge: callable that takes their heights.
+        judge: callable that takes the heights at the points.
     """
 
     points_in_root: Points
@@ -68,35 +68,35 @@ class OnPoints:
 
 
 def stated_points(condition: Condition | Judge) -> Points | None:
-    """Return the points that a condition states, or None for a plain callable."""
+    """Return the points that a condition states; None for a plain callable."""
     points = getattr(condition, "points_in_root", None)
     return None if points is None else np.asarray(points, dtype=np.float64)
 
 
 def with_points(condition: Condition | Judge, points: Points) -> Condition:
-    """Return a condition as it is; a plain callable as one that reads the heights at `points`."""
+    """Return a condition unchanged, or a plain callable as one that reads `points`."""
     if stated_points(condition) is None:
         return OnPoints(points, condition)
     return condition  # type: ignore[return-value]
 
 
 def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
-    """Return the condition that holds where all of `conditions` do: the least of their margins.
+    """Return the condition that holds where all of `conditions` do: the smallest of their margins.
 
-    It reads the union of their points. A plain callable states no points: it is given all the
-    heights that the others read, who must then read the same ones.
+    It reads the union of their points. A plain callable states no points: it receives all the
+    heights that the others read, which must then all read the same ones.
 
     Args:
-        conditions: at least one condition.
-        order: points in the root frame in whose order the union is listed as far as it lies among
+        conditions: conditions to combine, at least one.
+        order: points in the root frame that set the order of the union, as far as it lies among
             them [m]; by default the order of the conditions.
 
     Returns:
-        A `Condition`, or a plain callable where every condition is one.
+        A `Condition`, or a plain callable if every condition is one.
 
     Raises:
-        InputError: no condition is given, or plain callables are mixed with conditions of various
-            points.
+        InputError: no condition is given, or plain callables are mixed with conditions that read
+            different points.
     """
     if not conditions:
         raise InputError("all_of needs at least one condition")
@@ -115,14 +115,14 @@ def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
 
 
 class AllOf:
-    """The least margin of several conditions, each of which reads its own of the points."""
+    """The smallest margin of several conditions, each of which reads its own points."""
 
     def __init__(self, points_in_root: Points, conditions: Sequence[Condition | Judge]) -> None:
         """Combine conditions.
 
         Args:
-            points_in_root: points that are read, those of each condition among them [m].
-            conditions: conditions; a plain callable reads all of the points.
+            points_in_root: points to read, including those of each condition [m].
+            conditions: conditions to combine; a plain callable reads all of the points.
         """
         self.points_in_root = points_in_root
         self.conditions = tuple(conditions)
@@ -136,11 +136,11 @@ class AllOf:
     def __call__(
         self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
     ) -> Float[Array, "*batch"]:
-        """Return the least of the margins."""
+        """Return the smallest of the margins."""
         return self._judge(heights_in_root, motion)
 
     def read_from(self, points: Points) -> "Condition":
-        """Return the same condition for the heights at more points."""
+        """Return the same condition for the heights at further points."""
         own = [
             OnPoints(self.points_in_root, each) if stated_points(each) is None else each  # type: ignore[arg-type]
             for each in self.conditions
@@ -161,14 +161,14 @@ def _least(judges: Sequence[Judge]) -> Judge:
 
 
 def read_from(points: Points, condition: Condition) -> Condition:
-    """Return the same condition for the heights at more points, its own among them.
+    """Return the same condition for the heights at further points, which include its own.
 
-    The analytic conditions change the indices inside (`read_from` of theirs): a gather of their
-    heights would cost 20 times as much on a processor. Any other is given `heights[..., columns]`.
+    The analytic conditions change their indices (in their method `read_from`): a gather of their
+    heights would cost 20 times as much on a processor. Others receive `heights[..., columns]`.
 
     Args:
         points: points in the root frame whose heights the result takes [m].
-        condition: condition to be asked.
+        condition: condition to convert.
 
     Raises:
         InputError: a point that the condition reads is not among them.

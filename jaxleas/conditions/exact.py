@@ -1,8 +1,8 @@
 """The slow twins of R, R* and C: polytopes against the scene's polygons, in NumPy float64.
 
-They share no code with the margins on height maps. Where the twins differ from them by definition:
-R and R* ask about the polygons they are given, so pass a scene's *surfaces* (nothing stands on the
-side of a wall); C asks whether a trunk box meets a polygon, so ground *above* the trunk is free and
+They share no code with the margins on height maps. The twins differ from them by definition: R and
+R* test the polygons that they are given, so pass a scene's *surfaces* (nothing stands on the side
+of a wall); C tests whether a trunk box meets a polygon, so ground *above* the trunk is free and
 a trunk wholly inside a solid goes unnoticed, while the map's C refuses both.
 """
 
@@ -18,8 +18,8 @@ from jaxleas.types import InputError
 
 Polygons = Iterable[Float[np.ndarray, "V 3"]]
 
-_ROOTS_AT_ONCE = 1024  # bounds memory: a table of roots x polygons
-_PAIRS_AT_ONCE = 8192  # and one of pairs x vertices x faces
+_ROOTS_AT_ONCE = 1024  # bounds the memory of a table of roots x polygons
+_PAIRS_AT_ONCE = 8192  # bounds the memory of a table of pairs x vertices x faces
 
 
 def exact_reachability(
@@ -28,12 +28,12 @@ def exact_reachability(
     position: Float[np.ndarray, "*batch 3"],
     yaw: Float[np.ndarray, "*batch"],
 ) -> Bool[np.ndarray, "*batch"]:
-    """Tell where R holds: some polygon meets the range of motion of some leg (T 3.1.1).
+    """Return where R holds: some polygon meets the range of motion of some leg (T 3.1.1).
 
     Args:
-        robot: whose legs.
+        robot: robot whose legs reach.
         polygons: convex contact surfaces in the world [m]; see `pack_polygons`.
-        position: of the root in the world [m].
+        position: position of the root in the world [m].
         yaw: heading of the root [rad].
     """
     reaches = [limb.range_of_motion for limb in robot.legs]
@@ -46,12 +46,12 @@ def exact_strict_reachability(
     position: Float[np.ndarray, "*batch 3"],
     yaw: Float[np.ndarray, "*batch"],
 ) -> Bool[np.ndarray, "*batch"]:
-    """Tell where R* holds: as R, within the column |x|, |y| <= 0.1 m under the root (T eq. 3.6).
+    """Return where R* holds: as R, within the column |x|, |y| <= 0.1 m under the root (T eq. 3.6).
 
     Args:
-        robot: whose legs.
+        robot: robot whose legs reach.
         polygons: convex contact surfaces in the world [m].
-        position: of the root in the world [m].
+        position: position of the root in the world [m].
         yaw: heading of the root [rad].
     """
     sides = np.array([[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0]])
@@ -65,12 +65,12 @@ def exact_collision(
     position: Float[np.ndarray, "*batch 3"],
     yaw: Float[np.ndarray, "*batch"],
 ) -> Bool[np.ndarray, "*batch"]:
-    """Tell where C holds, that is where the trunk is free: no polygon meets a trunk box (T 3.1.1).
+    """Return where C holds, so where the trunk is free: no polygon meets a trunk box (T 3.1.1).
 
     Args:
-        robot: whose trunk.
-        polygons: of surfaces and obstacles, sides included, in the world [m].
-        position: of the root in the world [m].
+        robot: robot whose trunk must be free.
+        polygons: polygons of surfaces and obstacles, including sides, in the world [m].
+        position: position of the root in the world [m].
         yaw: heading of the root [rad].
     """
     boxes = [Polytope.from_box(box) for box in robot.trunk]
@@ -83,22 +83,22 @@ def reconfirm(
     yaw: Float[np.ndarray, " N"],
     exact: Callable[[np.ndarray, np.ndarray], Bool[np.ndarray, " M"]],
 ) -> Bool[np.ndarray, " N"]:
-    """Ask the exact condition again wherever the approximation refused (T 3.3.1).
+    """Ask the exact condition wherever the approximation refused (T 3.3.1).
 
     The map can overlook a small surface between its points, so that a refusal may be wrong; an
-    approval of R or R* seldom is.
+    approval of R or R* rarely is.
 
     Args:
-        satisfied: verdicts of the approximation.
-        position: of the roots in the world [m].
-        yaw: headings [rad].
-        exact: asked with the refused positions and yaws alone.
+        satisfied: answers of the approximation.
+        position: positions of the roots in the world [m].
+        yaw: headings of the roots [rad].
+        exact: exact condition, which is called with the refused positions and yaws alone.
     """
-    verdict = np.array(satisfied, dtype=bool)
-    refused = np.flatnonzero(~verdict)
+    holds = np.array(satisfied, dtype=bool)
+    refused = np.flatnonzero(~holds)
     if len(refused):
-        verdict[refused] = exact(np.asarray(position)[refused], np.asarray(yaw)[refused])
-    return verdict
+        holds[refused] = exact(np.asarray(position)[refused], np.asarray(yaw)[refused])
+    return holds
 
 
 def _meets_any(

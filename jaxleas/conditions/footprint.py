@@ -5,19 +5,19 @@ from jaxtyping import Bool, Float
 
 from jaxleas.robots import Robot
 
-MOST_SPACING = (0.112, 0.101)  # along x and y [m]: at least two points across any 0.3 m bridge
+MOST_SPACING = (0.112, 0.101)  # along x and y [m]: two or more points across any 0.3 m bridge
 UNDER_ROOT = 0.1  # half side of the square "directly under the root" of T eq. 3.6 [m]
 _TOLERANCE = 1e-6  # [m]
 
 
 def footprint_points(robot: Robot) -> Float[np.ndarray, "P 2"]:
-    """Return points that cover the shadow of the trunk's lowest box, its edges included.
+    """Return points that cover the shadow of the trunk's lowest box, including its edges.
 
     For Talos 4 x 7 points, x in [-0.2, 0.133], y in [-0.3, 0.3], mirrored in y = 0. Higher boxes
-    stand out from this shadow by 4 cm at most, and 0.6 m higher up.
+    extend beyond this shadow by 4 cm at most, and only 0.6 m higher up.
 
     Args:
-        robot: whose trunk casts the shadow.
+        robot: robot whose trunk casts the shadow.
 
     Returns:
         Points in the root frame [m], x slowest.
@@ -33,5 +33,5 @@ def footprint_points(robot: Robot) -> Float[np.ndarray, "P 2"]:
 
 
 def is_under_root(points: Float[np.ndarray, "P 2"]) -> Bool[np.ndarray, " P"]:
-    """Tell which points lie directly under the root: H* of T eq. 3.6."""
+    """Return which points lie directly under the root: H* of T eq. 3.6."""
     return np.all(np.abs(points) <= UNDER_ROOT + _TOLERANCE, axis=-1)

@@ -1,4 +1,4 @@
-"""A condition with memory: what is judged is the walk so far, not one configuration."""
+"""A condition with memory: it judges the walk so far, not one configuration."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -10,10 +10,10 @@ from jaxtyping import Float
 from jaxleas.types import RootMotion
 
 Pick = Callable[[Array], Array]
-"""Takes some robots out of an array with one entry a robot."""
+"""Takes some robots out of an array with one entry per robot."""
 LookAround = Callable[[Pick, np.ndarray], Array]
-"""Returns the local terrain of the robots picked [m], at those of a `Condition`'s points that have
-these indices."""
+"""Returns the local terrain of the picked robots [m] at the points of a `Condition` with these
+indices."""
 
 
 def everyone(leaf: Array) -> Array:
@@ -22,9 +22,9 @@ def everyone(leaf: Array) -> Array:
 
 
 class Foresight(Protocol):
-    """Anything that judges a walk step by step and remembers what it needs of it.
+    """A condition on a walk, judged step by step, which remembers what it needs of it.
 
-    A contact planner's verdict on a configuration depends on the stance it came with, so its
+    A contact planner's verdict on a configuration depends on the stance before it, so its
     learned stand-in needs memory, which the environment keeps in the state of the episode.
     """
 
@@ -38,10 +38,10 @@ class Foresight(Protocol):
 
         Args:
             heights_in_root: local terrain, as a `Condition` takes it [m].
-            motion: of the root.
-            chance: uniform in [0, 1), drawn once for the walk: a foresight that knows a probability
-                fails where that of having come so far falls below it. So its verdicts fall as the
-                planner's would, and in the right place.
+            motion: motion of the root.
+            chance: uniform number in [0, 1), drawn once for the walk: a foresight that knows a
+                probability fails where the probability of having come so far falls below it. So it
+                fails as often as the planner would, and in the right places.
 
         Returns:
             Signed margin, positive where satisfied, and the memory: a pytree with the batch's axes
@@ -55,8 +55,9 @@ class Foresight(Protocol):
         """Judge the next configuration of the walk; return margin and memory, as `begin` does.
 
         Args:
-            memory: of the walk.
-            look_around: shows local terrain; looking is dear, and who need not look does not.
-            motion: of the root.
+            memory: memory of the walk.
+            look_around: function that returns local terrain; it is expensive, so call it only if
+                needed.
+            motion: motion of the root.
         """
         ...

@@ -12,16 +12,16 @@ from jaxleas.configuration.strict import Strict
 from jaxleas.files import digest_of
 
 STANDARD = ("strict_reachability", "collision")
-"""R* and C: what every policy is judged by (T 3.3.1)."""
+"""R* and C: the conditions by which every policy is judged (T 3.3.1)."""
 
 
 class SurrogateSettings(Strict):
-    """A contact planner's learned stand-in that ends episodes, too."""
+    """A contact planner's learned stand-in that also ends episodes."""
 
     surrogate: Annotated[str, Field(min_length=1)]
-    """File written by `jaxleas fit`, found from the working folder."""
+    """File written by `jaxleas fit`, relative to the working folder."""
     threshold: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
-    """The risk dial: a walk ends where the planner got so far with less than this probability. 0
+    """The risk dial: a walk ends where the planner gets this far with less than this probability; 0
     fails as often as the planner would."""
     sha256: str | None = None
     """Digest of the file, recorded when a run begins."""
@@ -38,7 +38,7 @@ Named = Annotated[
 
 
 def _require_known(named: tuple[Named, ...]) -> tuple[Named, ...]:
-    """Refuse names that no condition has, and surrogates that are too many or alone."""
+    """Refuse unknown names, several surrogates, and a surrogate alone."""
     names = [each for each in named if isinstance(each, str)]
     for name in names:
         if name == SURROGATE:
@@ -47,7 +47,7 @@ def _require_known(named: tuple[Named, ...]) -> tuple[Named, ...]:
             raise ValueError(f"there is no condition {name!r}{CONDITIONS.hint(name)}")
     if not names:
         raise ValueError(
-            f"a configuration must be judged by itself, too: give {', '.join(STANDARD)} beside it"
+            f"a configuration must be judged by itself, too: give {', '.join(STANDARD)} as well"
         )
     if len(named) - len(names) > 1:
         raise ValueError("it names two surrogates, and an episode can follow one: leave one out")
@@ -59,7 +59,7 @@ NamedConditions = Annotated[tuple[Named, ...], Field(min_length=1), AfterValidat
 
 
 def pinned(named: tuple[Named, ...]) -> tuple[Named, ...]:
-    """Return the same conditions with each file by its absolute path and its digest.
+    """Return the same conditions, with the absolute path and digest of each file.
 
     Raises:
         InputError: a file is missing.
@@ -81,7 +81,7 @@ def harmless(named: tuple[Named, ...], allow: Collection[str] = ()) -> bool:
     """Return whether conditions are built in or allowed: neither other code nor a file.
 
     Args:
-        named: conditions that a file states, a stranger's perhaps.
-        allow: each MODULE:CLASS that a person has named.
+        named: conditions that a file states, which may be untrusted.
+        allow: user's own code that may be run, as MODULE:CLASS.
     """
     return all(isinstance(each, str) and (each in CONDITIONS or each in allow) for each in named)

@@ -1,4 +1,4 @@
-"""Sets of points in the root frame: their union, and where one lies in another."""
+"""Sets of points in the root frame: their union, and the indices of one set in another."""
 
 from collections.abc import Sequence
 
@@ -16,8 +16,8 @@ def union_of_points(several: Sequence[Points], order: Points | None = None) -> P
 
     Args:
         several: sets of points in the root frame [m].
-        order: points in whose order the union is listed as far as it lies among them [m]; what
-            lies elsewhere follows in the order of the sets.
+        order: points that set the order of the union, as far as it lies among them [m]; other
+            points follow in the order of the sets.
     """
     wanted = {_key(point): point for points in several for point in points}
     first = [wanted.pop(_key(point)) for point in _none_if(order) if _key(point) in wanted]
@@ -25,17 +25,17 @@ def union_of_points(several: Sequence[Points], order: Points | None = None) -> P
 
 
 def extended(points: Points, further: Points) -> Points:
-    """Return `points`, and behind them those of `further` that are not among them."""
+    """Return `points`, followed by those of `further` that are not among them."""
     known = {_key(point) for point in points}
     new = [point for point in union_of_points([further]) if _key(point) not in known]
     return np.concatenate([points, np.array(new).reshape(-1, 2)]) if new else points
 
 
 def columns_of(wanted: Points, points: Points) -> Int[np.ndarray, " wanted"]:
-    """Return where each of `wanted` stands in `points`.
+    """Return the index of each of `wanted` in `points`.
 
     Raises:
-        InputError: one of them is not there.
+        InputError: one of them is missing.
     """
     places: dict[tuple[float, ...], int] = {}
     for index, point in enumerate(points):

@@ -17,7 +17,7 @@ from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 
 Interval = tuple[int, float, float]
-"""Index of a point, and the z interval of a leg's range of motion over it [m]."""
+"""Index of a point, and z interval of a leg's range of motion over it [m]."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -29,21 +29,21 @@ class Reachability:
 
     Attributes:
         points_in_root: points that lie over a range of motion [m].
-        intervals: of each leg, over each of them.
+        intervals: intervals of each leg over the points.
     """
 
     points_in_root: Float[np.ndarray, "P 2"]
     intervals: tuple[Interval, ...]
 
     def __init__(self, robot: Robot, candidates: Float[np.ndarray, "C 2"]) -> None:
-        """Keep those of the candidates that matter.
+        """Keep the candidates that the condition needs.
 
         Args:
             robot: robot whose legs reach.
             candidates: points whose heights are sampled anyway [m].
 
         Raises:
-            InputError: no candidate that counts lies over any leg's range of motion.
+            InputError: no candidate that it considers lies over any leg's range of motion.
         """
         considered = candidates[self._counts(candidates)]
         reaches = [limb.range_of_motion.z_interval(considered) for limb in robot.legs]
@@ -64,12 +64,12 @@ class Reachability:
     def __call__(
         self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
     ) -> Float[Array, "*batch"]:
-        """Return the margin [m]."""
+        """Return the margin of the condition [m]."""
         del motion
         return _margin(self.intervals, heights_in_root)
 
     def read_from(self, points: Float[np.ndarray, "Q 2"]) -> Self:
-        """Return the same condition for the heights at more points."""
+        """Return the same condition for the heights at further points."""
         columns = columns_of(self.points_in_root, points)
         moved = object.__new__(type(self))
         intervals = tuple((int(columns[i]), low, high) for i, low, high in self.intervals)
@@ -93,7 +93,7 @@ class StrictReachability(Reachability):
 
 
 def reachability(robot: Robot, points: Float[np.ndarray, "P 2"]) -> Condition:
-    """Return R for the heights at all of `points`, those that do not matter to it included.
+    """Return R for the heights at all of `points`, including those that it does not need.
 
     Args:
         robot: robot whose legs reach.
@@ -106,7 +106,7 @@ def reachability(robot: Robot, points: Float[np.ndarray, "P 2"]) -> Condition:
 
 
 def strict_reachability(robot: Robot, points: Float[np.ndarray, "P 2"]) -> Condition:
-    """Return R* for the heights at all of `points`, those that do not matter to it included.
+    """Return R* for the heights at all of `points`, including those that it does not need.
 
     Args:
         robot: robot whose legs reach.
@@ -121,7 +121,7 @@ def strict_reachability(robot: Robot, points: Float[np.ndarray, "P 2"]) -> Condi
 def _margin(
     intervals: Sequence[Interval], heights: Float[Array, "*batch P"]
 ) -> Float[Array, "*batch"]:
-    # One term an interval: XLA fuses such slices, where a gather costs 20 times as much (CPU).
+    # One term per interval: XLA fuses such slices; a gather costs 20 times as much (CPU).
     margins = [
         jnp.minimum(heights[..., index] - low, high - heights[..., index])
         for index, low, high in intervals

@@ -1,1 +1,1 @@
-"""YAML and command line to typed, validated values."""
+"""Typed, validated values from YAML files and the command line."""

@@ -1,4 +1,4 @@
-"""The fields of a configuration model: their dotted names, the nearest to a typo, their help."""
+"""The fields of a configuration model: dotted names, suggestions for typos, and help texts."""
 
 import difflib
 import types
@@ -16,9 +16,9 @@ class Field:
     """One field of a model, or of a model inside it.
 
     Attributes:
-        name: dotted, as in `ppo.learning_rate`.
-        info: what pydantic knows of it.
-        section: the model it holds, if it holds one.
+        name: dotted name, as in `ppo.learning_rate`.
+        info: pydantic's description of the field.
+        section: model that the field holds, if it holds one.
     """
 
     name: str
@@ -36,23 +36,23 @@ def fields_of(model: type[BaseModel], prefix: str = "") -> Iterator[Field]:
 
 
 def nearest(name: str, names: list[str]) -> str | None:
-    """Return the one of `names` that `name` was probably meant to be, if any is near.
+    """Return the entry of `names` that `name` probably stands for, if any is close.
 
     The last part of the dotted name decides, so that `learning_rate` at the top level finds
-    `ppo.learning_rate`; between equals, the whole.
+    `ppo.learning_rate`; between equals, the whole name decides.
     """
 
     def likeness(candidate: str) -> tuple[float, float]:
         return _ratio(_last(name), _last(candidate)), _ratio(name, candidate)
 
-    # A section is no answer to a wrong field in it.
+    # A section is not a suggestion for a wrong field in it.
     others = [candidate for candidate in names if not name.startswith(f"{candidate}.")]
     best = max(others, key=likeness, default=None)
     return best if best is not None and likeness(best)[0] >= 0.6 else None
 
 
 def help_text(model: type[BaseModel], config: BaseModel) -> str:
-    """Return one paragraph a field: `--name`, its type, its value in `config`, its docstring."""
+    """Return one paragraph per field: `--name`, its type, its value in `config`, its docstring."""
     lines = ["Every field of the configuration can be set on the command line:", ""]
     for field in fields_of(model):
         if field.section is not None and _value(config, field.name) is not None:
@@ -65,7 +65,7 @@ def help_text(model: type[BaseModel], config: BaseModel) -> str:
 
 
 def _section(annotation: Any) -> type[BaseModel] | None:
-    """Return the model in `annotation`: itself, or the one in an optional or annotated type."""
+    """Return the model of an annotation: itself, or the one in an optional or annotated type."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     if typing.get_origin(annotation) in (typing.Union, types.UnionType, typing.Annotated):

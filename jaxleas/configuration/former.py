@@ -8,20 +8,20 @@ from jaxleas.types.errors import InputError
 
 
 def present_name(model: type[Strict], name: str) -> str:
-    """Return the present dotted name of a field: itself, unless it has moved."""
+    """Return the present dotted name of a field: the given one, unless the field has moved."""
     return model.former_names().get(name, name)
 
 
 def with_present_names(model: type[Strict], stated: dict[str, Any], source: str) -> dict[str, Any]:
-    """Return what a file states, under the present names of its fields.
+    """Return the values that a file states, under the present names of their fields.
 
     Args:
         model: type of the configuration.
-        stated: nested mappings.
-        source: what an error's sentence begins with.
+        stated: nested mappings of the values.
+        source: name of the file, with which error messages begin.
 
     Raises:
-        InputError: a field is stated under both names, or its new section is no mapping.
+        InputError: a field is stated under both names, or its new section is not a mapping.
     """
     for former, present in model.former_names().items():
         value, rest = _taken_out(stated, former.split("."))
@@ -32,7 +32,7 @@ def with_present_names(model: type[Strict], stated: dict[str, Any], source: str)
 
 
 def _taken_out(stated: Any, parts: list[str]) -> tuple[Any, dict[str, Any] | None]:
-    """Return a value, and the mapping without it; None where it is not there."""
+    """Return a value and the mapping without it; None instead of the mapping if it is missing."""
     if not isinstance(stated, Mapping) or parts[0] not in stated:
         return None, None
     rest = dict(stated)

@@ -1,9 +1,9 @@
 """Reading a configuration: YAML files, then the command line, then one validation of it all.
 
-Pydantic validates and our own few lines parse `--any.field VALUE`. tyro does this too, but answers
-in boxes of many lines, and knows neither which of several files a value came from nor pydantic's
-ranges before it has parsed; here every mistake is one sentence, whether it was made in a file, in
-the file that this one extends, or on the command line.
+Pydantic validates, and a few lines here parse `--any.field VALUE`. tyro does this too, but its
+error messages are boxes of many lines; it does not know which of several files a value came from,
+nor pydantic's ranges before parsing. Here every mistake is reported in one sentence, whether it was
+made in a file, in the file that this one extends, or on the command line.
 """
 
 import json
@@ -21,7 +21,7 @@ from jaxleas.configuration.yaml_text import dump_yaml, parse_yaml, read_mapping
 from jaxleas.types.errors import InputError
 
 Model = TypeVar("Model", bound=Strict)
-# Where values come from, weakest first: (what to call it in a sentence, what it states).
+# Sources of values, weakest first: (name for messages, stated values).
 Layers = list[tuple[str, dict[str, Any]]]
 COMMAND_LINE = "command line"
 MAX_EXTENDED = 20
@@ -33,15 +33,15 @@ def load_config(model: type[Model], path: str | Path, overrides: Sequence[str] =
     A file may state `extends: other.yaml` (relative to itself) and then only what differs.
 
     Args:
-        model: the kind of configuration.
-        path: the YAML file.
+        model: type of the configuration.
+        path: path of the YAML file.
         overrides: arguments such as `--ppo.discount 0.97` or `--ppo.discount=0.97`, for any field
-            of the model; values are written as in YAML, the last of several wins. With `--help`
-            among them, all fields are printed and the program ends.
+            of the model; values are written as in YAML, and the last of several wins. If `--help`
+            is among them, all fields are printed and the program ends.
 
     Raises:
-        InputError: one sentence that names the file (or the command line), the key, what was
-            given, and what would do.
+        InputError: the configuration is invalid; one sentence names the file (or the command
+            line), the key, what was given, and what would do.
     """
     return load_layers(model, layers_of(path), overrides)
 
@@ -50,12 +50,12 @@ def load_layers(model: type[Model], layers: Layers, overrides: Sequence[str] = (
     """Return the configuration that files already read and the command line state together.
 
     Args:
-        model: the kind of configuration.
-        layers: what the files state, the weakest first.
-        overrides: as `load_config` takes them.
+        model: type of the configuration.
+        layers: values that the files state, the weakest first.
+        overrides: arguments, as for `load_config`.
 
     Raises:
-        InputError: as `load_config`.
+        InputError: the configuration is invalid, as for `load_config`.
     """
     wants_help = any(argument in ("--help", "-h") for argument in overrides)
     if overrides and not wants_help:
@@ -68,10 +68,10 @@ def load_layers(model: type[Model], layers: Layers, overrides: Sequence[str] = (
 
 
 def layers_of(path: str | Path) -> Layers:
-    """Return what a YAML file and those that it extends state, the most basic first.
+    """Return the values that a YAML file and those that it extends state, the most basic first.
 
     Raises:
-        InputError: a file is missing, is no mapping, or extends itself.
+        InputError: a file is missing, is not a mapping, or extends itself.
     """
     return _layers(Path(path), ())
 
@@ -82,7 +82,7 @@ def to_yaml(config: Strict) -> str:
 
 
 def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
-    """Return what `path` and the files it extends state, the most basic first."""
+    """Return the values that `path` and the files it extends state, the most basic first."""
     if path.resolve() in above:
         raise InputError(f"{path} extends itself: {' -> '.join(map(str, (*above, path)))}")
     stated = read_mapping(path)
@@ -100,7 +100,7 @@ def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
 def _require_below(path: Path, parent: str) -> None:
     """Refuse to read a file outside the folder of the one that extends it: it may be a stranger's.
 
-    A link inside the folder is the owner's own doing.
+    A link inside the folder is the owner's own decision.
     """
     folder = path.parent.absolute()
     wanted = Path(os.path.normpath(folder / parent))
@@ -111,7 +111,7 @@ def _require_below(path: Path, parent: str) -> None:
 
 
 def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str, Any]:
-    """Return what `--any.field VALUE` and `--any.field=VALUE` state, nested as in the model."""
+    """Return the values of `--any.field VALUE` and `--any.field=VALUE`, nested as in the model."""
     fields = {field.name: field for field in fields_of(model)}
     stated: dict[str, Any] = {}
     rest = list(arguments)
@@ -140,17 +140,17 @@ def _parse_overrides(model: type[Strict], arguments: Sequence[str]) -> dict[str,
 
 
 def merge(below: Any, above: Any) -> Any:
-    """Return `below` with everything that `above` states put over it, key by key."""
+    """Return `below` overridden by everything that `above` states, key by key."""
     if not isinstance(below, dict) or not isinstance(above, dict):
         return above
     return {**below, **{key: merge(below.get(key), value) for key, value in above.items()}}
 
 
 def validate(model: type[Model], layers: Layers) -> Model:
-    """Return the configuration that layers state together, the weakest first.
+    """Return the configuration that layers state together, given the weakest first.
 
     Raises:
-        InputError: one sentence that names the layer, the key, and what would do.
+        InputError: the value is invalid; the message names the layer, the key, and what would do.
     """
     layers = [(label, with_present_names(model, layer, label)) for label, layer in layers]
     stated: dict[str, Any] = {}
@@ -166,7 +166,7 @@ def validate(model: type[Model], layers: Layers) -> Model:
 
 
 def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
-    """Return what pydantic found wrong, as one sentence with its source."""
+    """Return an error of pydantic as one sentence with its source."""
     parts = [str(part) for part in error["loc"]]
     name = ".".join(parts)
     source = next(
@@ -176,7 +176,7 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
     if error["type"] == "extra_forbidden":
         names = [field.name for field in fields_of(model)]
         return f"{source}: there is no {name}{hint(name, names)}"
-    if error["type"].startswith("union_tag"):  # which of several kinds of section it is
+    if error["type"].startswith("union_tag"):  # the field that selects a kind of section
         tag = f"{name}.{error['ctx']['discriminator'].strip(chr(39))}"
         kinds = error["ctx"].get("expected_tags")
         if kinds is None:
@@ -203,7 +203,7 @@ def _states(layer: Any, parts: list[str]) -> bool:
 
 
 def hint(name: str, names: list[str], dashes: int = 0) -> str:
-    """Return the end of a sentence about an unknown field: the nearest of `names`, or all there."""
+    """Return the end of a message about an unknown field: the nearest of `names`, or all."""
     close = nearest(name, names)
     if close is not None:
         return f"; perhaps you meant {'-' * dashes}{close}"

@@ -1,4 +1,4 @@
-"""Plugs: what is built in, by name; what is the user's own, as MODULE:CLASS."""
+"""Plugs: built-in items by name, and the user's own as MODULE:CLASS."""
 
 import difflib
 import sys
@@ -13,16 +13,16 @@ Item = TypeVar("Item")
 
 
 class Registry(Generic[Item]):
-    """The one place where a kind of plug is named: its tasks, planners, conditions, ...
+    """The one place that names a kind of plug, such as tasks, planners or conditions.
 
         SHAPES = Registry("shape", {"box": "jaxleas.geometry:Box"})
 
-    A built-in item is imported when it is asked for, so that a list of names costs nothing and an
-    item may live in any room.
+    A built-in item is imported on request, so that a list of names costs nothing and an item may
+    live in any room.
 
     Attributes:
-        kind: what an item is, for messages: "task", "planner".
-        targets: the MODULE:NAME of each built-in item.
+        kind: name of the kind of item, for messages: "task", "planner".
+        targets: MODULE:NAME of each built-in item.
     """
 
     def __init__(
@@ -34,10 +34,10 @@ class Registry(Generic[Item]):
         """Name the built-in items.
 
         Args:
-            kind: what an item is.
-            targets: the MODULE:NAME of each built-in item.
-            require: called with name and item of the user's own; raises InputError where the item
-                is none of this kind.
+            kind: name of the kind of item.
+            targets: MODULE:NAME of each built-in item.
+            require: function that is called with name and item of the user's own; it raises
+                InputError if the item is not of this kind.
         """
         self.kind = kind
         self.targets = dict(targets)
@@ -48,7 +48,7 @@ class Registry(Generic[Item]):
         return iter(self.targets)
 
     def __contains__(self, name: object) -> bool:
-        """Whether an item of this name is built in."""
+        """Return whether an item of this name is built in."""
         return name in self.targets
 
     def find(self, name: str, allow: Collection[str] = ()) -> Item:
@@ -56,8 +56,8 @@ class Registry(Generic[Item]):
 
         Args:
             name: name of a built-in item, or MODULE:CLASS.
-            allow: each MODULE:CLASS that a person has named on a command line or in a call. A name
-                that comes from a file alone is never imported.
+            allow: user's own code that may be run, as MODULE:CLASS, named on a command line or in
+                a call. A name that comes from a file alone is never imported.
 
         Raises:
             InputError: there is no such item, its code may not be run, or it is of another kind.
@@ -73,13 +73,13 @@ class Registry(Generic[Item]):
                 " command line"
             )
         if (here := str(Path.cwd())) not in sys.path:
-            sys.path.append(here)  # where a person's own modules lie
+            sys.path.append(here)  # where the user's own modules are
         item = load(name, self.kind)
         self._require(name, item)
         return item
 
     def hint(self, name: str) -> str:
-        """Return the end of a sentence about an unknown name: the nearest right one, and all."""
+        """Return the end of a message about an unknown name: the nearest right one, and all."""
         close = difflib.get_close_matches(name, self.targets, n=1)
         meant = f"; perhaps you meant {close[0]}" if close else ""
         return f"{meant}; there are {self.describe()}"
@@ -90,14 +90,14 @@ class Registry(Generic[Item]):
 
 
 def is_own(name: str) -> bool:
-    """Whether a name is that of a class of the user's own, MODULE:CLASS."""
+    """Return whether a name is that of the user's own class, MODULE:CLASS."""
     return ":" in name
 
 
 def load(target: str, kind: str) -> Any:
     """Import MODULE:NAME.
 
-    This runs code: call it for names that a person gave, never for names from a file alone.
+    This runs code: call it for names that the user gave, never for names from a file alone.
 
     Raises:
         InputError: there is no such module or name.

@@ -1,4 +1,4 @@
-"""The base of every configuration section: frozen, and deaf to no misspelling."""
+"""The base of every configuration section: frozen, and strict about misspelt names."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Single fields of a configuration by their dotted names: looked up, and given other values."""
+"""Access to single fields of a configuration by their dotted names, and changed values."""
 
 from collections.abc import Mapping
 from typing import Any, TypeVar
@@ -15,15 +15,16 @@ Model = TypeVar("Model", bound=Strict)
 
 
 def require_field(model: type[Strict], name: str, source: str) -> Field:
-    """Return the field of this dotted name.
+    """Return the field with this dotted name.
 
     Args:
-        model: the kind of configuration.
-        name: as in `ppo.learning_rate`.
-        source: what the sentence begins with: where the name was given.
+        model: type of the configuration.
+        name: dotted name, as in `ppo.learning_rate`.
+        source: place where the name was given, with which error messages begin.
 
     Raises:
-        InputError: there is no such field (with the nearest there is), or it is a whole section.
+        InputError: there is no such field (the message names the nearest), or it is a whole
+            section.
     """
     fields = {field.name: field for field in fields_of(model)}
     name = present_name(model, name)
@@ -39,9 +40,9 @@ def with_values(config: Model, values: Mapping[str, Any], source: str) -> Model:
     """Return a configuration with some fields changed, validated as if a file had stated them.
 
     Args:
-        config: to begin with.
-        values: by dotted name.
-        source: what the sentence begins with: where the values were given.
+        config: configuration to change.
+        values: new values by dotted name.
+        source: place where the values were given, with which error messages begin.
 
     Raises:
         InputError: a value does not fit its field, or the fields do not fit each other.
@@ -58,16 +59,16 @@ def with_values(config: Model, values: Mapping[str, Any], source: str) -> Model:
 def require_value(config: Strict, name: str, value: Any, source: str) -> None:
     """Refuse a value that its field can never have.
 
-    A rule about several fields at once may be broken: another may change along with this one.
+    Rules about several fields at once are not checked: another field may change along with it.
 
     Args:
-        config: to try it in.
-        name: of the field, dotted.
-        value: to be tried.
-        source: what the sentence begins with.
+        config: configuration in which to try the value.
+        name: dotted name of the field.
+        value: value to try.
+        source: place where the value was given, with which error messages begin.
 
     Raises:
-        InputError: as `with_values`, for this field alone.
+        InputError: the value does not fit the field.
     """
     try:
         with_values(config, {name: value}, source)

@@ -1,4 +1,4 @@
-"""YAML as it should be: no repeated keys, `3e-4` is a number, and nothing but plain values."""
+"""A safe subset of YAML: no repeated keys, `3e-4` is a number, and only plain values."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from jaxleas.types.errors import InputError
 
 
 class _Loader(yaml.SafeLoader):
-    """Plain values only; a key given twice is an error."""
+    """Loader of plain values only; a key given twice is an error."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
         seen: set[Any] = set()
@@ -29,7 +29,7 @@ class _Loader(yaml.SafeLoader):
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes what `_Loader` reads: a string that looks like `3e-4` is quoted, nothing repeated."""
+    """Dumper for `_Loader`: it quotes strings that look like `3e-4`, and writes no aliases."""
 
     def ignore_aliases(self, data: Any) -> bool:
         return True
@@ -45,7 +45,7 @@ _OPENING = (
 )
 _CLOSING = yaml.FlowMappingEndToken | yaml.FlowSequenceEndToken
 
-# YAML 1.1 takes `3e-4` for a string, since it has no dot; nobody who writes it means one.
+# YAML 1.1 takes `3e-4` for a string, since it has no dot; authors mean a number.
 _EXPONENT = re.compile(r"^[-+]?[0-9][0-9_]*[eE][-+]?[0-9]+$")
 for _each in (_Loader, _Dumper):
     _each.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+0123456789"))
@@ -66,10 +66,11 @@ def parse_yaml(text: str) -> Any:
 
 
 def _require_plain(text: str) -> None:
-    """Refuse what takes time or memory out of proportion, before any value is made of it.
+    """Refuse text that would take disproportionate time or memory, before any value is made.
 
     Raises:
-        ValueError: an alias (which can stand for millions of values), or nesting too deep.
+        ValueError: there is an alias (which can stand for millions of values), or the text is too
+            long or nested too deep.
     """
     if len(text) > MAX_CHARACTERS:
         raise ValueError(f"it is longer than {MAX_CHARACTERS} characters")
@@ -112,7 +113,7 @@ def dump_yaml(value: dict[str, Any]) -> str:
 
 
 def _require_text_keys(value: Any, path: Path) -> None:
-    """Refuse keys that are no text, text that is no Unicode, and numbers that no field takes."""
+    """Refuse keys that are not text, text that is not Unicode, and numbers too large for fields."""
     if isinstance(value, str) and not value.isascii():
         try:
             value.encode()

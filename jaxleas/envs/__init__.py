@@ -1,1 +1,1 @@
-"""Environments: each room has its state, observation, reward, termination and step."""
+"""Environments: what a task is, and the tasks, each with its state, reward and step."""

@@ -1,8 +1,8 @@
-"""What any task is: the one protocol that learning, sweeps and export know.
+"""The protocol of a task, the only one on which learning, sweeps and export depend.
 
 A task is a class derived from `Task`, and a section of the configuration derived from `TaskConfig`.
-Its methods are pure and work on many robots at once: every array is [robots, ...]. What restarts
-episodes, mirrors experience, writes policies and exports them are functions over this protocol.
+Its methods are pure and work on many robots at once: every array is [robots, ...]. Functions over
+this protocol restart episodes, mirror experience, write policies and export them.
 """
 
 from abc import ABC, abstractmethod
@@ -23,15 +23,15 @@ from jaxleas.envs.signature import Signature
 from jaxleas.terrain.seeds import MAX_TRAINING_SEED
 
 FORMAT = 1
-"""Of what an exported policy says about itself."""
+"""Version of the description that an exported policy carries."""
 
 
 class TaskConfig(Strict, ABC):
     """A task's section of a run's configuration: `env`.
 
     Attributes:
-        swept: fields that are numbers in the compiled program and change no shape in it, dotted:
-            members of a population may differ in them.
+        swept: dotted names of the fields that are numbers in the compiled program and change no
+            shape in it: members of a population may differ in them.
         moved: former names of fields, of any section of a run: {"ppo.x": "env.y"}; files that use
             them still open.
     """
@@ -40,10 +40,10 @@ class TaskConfig(Strict, ABC):
     moved: ClassVar[Mapping[str, str]] = {}
 
     task: str
-    """Name of the task, or MODULE:CLASS of one's own."""
+    """Name of the task, or MODULE:CLASS of the user's own task."""
 
     def pinned(self) -> Self:
-        """Return the same task, each file that it names by its absolute path and its digest.
+        """Return the same task, with the absolute path and digest of each file that it names.
 
         A run folder keeps it in this form: a resumed run finds the files from any folder, and
         notices when one has changed.
@@ -55,10 +55,10 @@ class TaskConfig(Strict, ABC):
 
     @abstractmethod
     def signature(self) -> Signature:
-        """Return what a policy is shown and what it answers; the same at every call."""
+        """Return the signature of observation and action; the same at every call."""
 
     def describe(self) -> dict[str, Any]:
-        """Return what an exported policy says about itself, as plain JSON values by name."""
+        """Return the description that an exported policy carries, as plain JSON values by name."""
         signature = self.signature()
         parts = [{"name": part.name, "shape": list(part.shape)} for part in signature.seen]
         return {
@@ -71,7 +71,7 @@ class TaskConfig(Strict, ABC):
 
 
 class WorldsConfig(Strict):
-    """What a task's robots train in: section `terrain` of a run's configuration."""
+    """The worlds that a task's robots train in: section `terrain` of a run's configuration."""
 
     arenas: Count = 64
     """Number of random arenas."""
@@ -79,7 +79,7 @@ class WorldsConfig(Strict):
     """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
 
     def pinned(self) -> Self:
-        """Return the same worlds, each file that they name by its absolute path and its digest."""
+        """Return the same worlds, with the absolute path and digest of each file that they name."""
         return self
 
 
@@ -88,9 +88,9 @@ class Starts:
     """Candidates for the first states of episodes.
 
     Attributes:
-        state: of each candidate: a pytree of arrays [candidates, ...].
-        valid: whether an episode may begin there.
-        group: number of the group that each belongs to, an index of `Task.groups`.
+        state: state of each candidate, a pytree of arrays [candidates, ...].
+        valid: whether an episode may begin at each candidate.
+        group: number of each candidate's group, an index of `Task.groups`.
     """
 
     state: Any
@@ -100,13 +100,13 @@ class Starts:
 
 @struct.dataclass
 class StepResult:
-    """What a step tells, besides the next state.
+    """The result of a step, besides the next state.
 
     Attributes:
-        reward: for the step.
-        terminated: the episode failed: it ends, and nothing follows.
-        truncated: the episode was cut: its future has a value, only unseen.
-        reached: the goal sought during the step was reached.
+        reward: reward for the step.
+        terminated: whether the episode failed: it ends, and nothing follows.
+        truncated: whether the episode was cut: its future has a value that was not seen.
+        reached: whether the goal sought during the step was reached.
         measures: further numbers by name, whose means are logged as `walk/NAME`.
     """
 
@@ -119,13 +119,13 @@ class StepResult:
 
 @dataclass(frozen=True)
 class Examination:
-    """How success is measured during training, on worlds that are never trained on.
+    """The measure of success during training, on worlds that are never trained on.
 
     Attributes:
-        starts: number of episodes; each is walked without chance until it reaches, fails, or its
-            time is up.
-        steps: most steps of each.
-        cells: groups of starts whose success is told apart, besides that of all.
+        starts: number of episodes; each is walked by the deterministic policy until it reaches its
+            goal, fails, or runs out of time.
+        steps: largest number of steps of each episode.
+        cells: groups of starts whose success is reported separately, besides that of all.
     """
 
     starts: int
@@ -136,19 +136,19 @@ class Examination:
 class Task(ABC):
     """One task for one configuration; it holds constants only.
 
-    Arrays are JAX's and methods are traced, unless `on_host`: then they are NumPy's, methods are
-    called as they are (a simulator in C may hide behind them), and each `key` is a
+    Arrays are JAX arrays and methods are traced, unless `on_host`: then arrays are NumPy arrays,
+    methods are called directly (they may use a simulator in C), and each `key` is a
     `numpy.random.Generator`.
 
     Attributes:
-        Config: the section `env`.
-        Worlds: the section `terrain`.
-        on_host: whether its methods work in NumPy.
+        Config: type of the configuration section `env`.
+        Worlds: type of the configuration section `terrain`.
+        on_host: whether the methods work in NumPy.
         is_disturbed: whether `draw_disturbances` draws anything.
         groups: names of the groups of starts.
         config: configuration of the task.
-        worlds: configuration of what its robots train in.
-        signature: what a policy is shown and what it answers.
+        worlds: configuration of the worlds that its robots train in.
+        signature: signature of observation and action.
     """
 
     Config: ClassVar[type[TaskConfig]]
@@ -162,7 +162,7 @@ class Task(ABC):
 
         Args:
             config: configuration of the task, of type `Config`.
-            worlds: configuration of what its robots train in, of type `Worlds`.
+            worlds: configuration of the worlds that its robots train in, of type `Worlds`.
         """
         self.config = config
         self.worlds = worlds
@@ -174,8 +174,8 @@ class Task(ABC):
 
         Args:
             config: configuration of the task.
-            worlds: configuration of what its robots train in.
-            allow: code of the user's own that may be run, each MODULE:CLASS.
+            worlds: configuration of the worlds that its robots train in.
+            allow: user's own code that may be run, as MODULE:CLASS.
         """
         del allow
         return cls(config, worlds)
@@ -183,20 +183,20 @@ class Task(ABC):
     def require_worlds(self) -> None:  # noqa: B027 (most tasks have nothing to refuse)
         """Refuse worlds that cannot be made, as far as that can be seen quickly.
 
-        Asked before a run folder is made.
+        This is called before a run folder is made.
 
         Raises:
-            InputError: one sentence with file and key.
+            InputError: the worlds cannot be made; one sentence names file and key.
         """
 
     @abstractmethod
     def make_world(self, seeds: Sequence[int], examined: bool) -> Any:
-        """Return what the robots stand in, a pytree of arrays (NumPy's, or JAX's).
+        """Return the world that the robots walk in, a pytree of arrays (of NumPy or JAX).
 
         Args:
-            seeds: seeds of its arenas; those of training and examination never meet.
-            examined: whether it is for the examination: then every start should have a goal that
-                can be reached.
+            seeds: seeds of its arenas; training and examination never share one.
+            examined: whether the world is for the examination: then every start should have a goal
+                that can be reached.
         """
 
     @abstractmethod
@@ -204,40 +204,40 @@ class Task(ABC):
         """Draw candidates for the first states of episodes, anew at every call.
 
         Args:
-            world: of `make_world`.
-            key: randomness, consumed here.
+            world: world returned by `make_world`.
+            key: random key, consumed here.
             count: number of candidates.
-            examined: whether they are for the examination.
+            examined: whether the starts are for the examination.
         """
 
     def stagger(self, state: Any, key: Any) -> Any:
         """Return first states as if their episodes had begun at different times.
 
-        Episodes that end at different times make no wave of restarts.
+        Episodes that end at different times avoid a wave of restarts.
 
         Args:
-            state: of all robots, at the beginning of their episodes.
-            key: randomness, consumed here.
+            state: state of all robots at the beginning of their episodes.
+            key: random key, consumed here.
         """
         del key
         return state
 
     def draw_disturbances(self, key: Any, shape: tuple[int, ...]) -> Any:
-        """Draw the chance of a whole roll-out in bulk: a pytree of arrays [*shape, ...].
+        """Draw the disturbances of a whole roll-out in bulk: a pytree of arrays [*shape, ...].
 
         Args:
-            key: randomness, consumed here.
-            shape: steps and robots.
+            key: random key, consumed here.
+            shape: numbers of steps and robots.
         """
         del key, shape
         return ()
 
     def weights(self, numbers: Mapping[str, Any], progress: Any) -> Any:
-        """Return the numbers that rewards are made with, a pytree of scalars.
+        """Return the weights of the reward, a pytree of scalars.
 
         Args:
             numbers: value of each field that `Config.swept` names.
-            progress: share of the training that is done, 0 to 1.
+            progress: completed share of the training, 0 to 1.
         """
         del progress
         return dict(numbers)
@@ -246,24 +246,24 @@ class Task(ABC):
     def advance(
         self, world: Any, weights: Any, state: Any, action: Any, disturbance: Any
     ) -> tuple[Any, StepResult]:
-        """Advance one time step; return the next state and what the step tells.
+        """Advance one time step; return the next state and the step result.
 
         Args:
-            world: of `make_world`.
-            weights: of `weights`.
-            state: of the episodes.
-            action: what the heads answer: by name, or of the only head alone; real numbers in
+            world: world returned by `make_world`.
+            weights: weights returned by `weights`.
+            state: state of the episodes.
+            action: action of each head by name, or of the only head alone; real numbers in
                 [-1, 1] (`command` gives physical units), choices as indices.
-            disturbance: one step's part of `draw_disturbances`.
+            disturbance: disturbances of this step, from `draw_disturbances`.
         """
 
     @abstractmethod
     def look(self, world: Any, state: Any) -> Any:
-        """Return what is seen in a state, in physical units: by part, or the only part alone.
+        """Return the observation of a state, in physical units: by part, or the only part alone.
 
         Args:
-            world: of `make_world`.
-            state: of the episodes.
+            world: world returned by `make_world`.
+            state: state of the episodes.
         """
 
     def command(self, action: Any) -> Any:
@@ -274,14 +274,14 @@ class Task(ABC):
         """Return how success is measured during training.
 
         Args:
-            held_out: section of the run's configuration: `starts` and `steps`.
+            held_out: section `held_out` of the run's configuration, with `starts` and `steps`.
         """
         cells = self.groups if len(self.groups) > 1 else ()
         return Examination(held_out.starts, held_out.steps, cells)
 
 
 def select(flag: Bool[Array, " robots"], chosen: Any, other: Any) -> Any:
-    """Return, robot by robot, `chosen` where the flag is set and `other` elsewhere."""
+    """Return, robot by robot, `chosen` where `flag` is true and `other` elsewhere."""
 
     def pick(left: Array, right: Array) -> Array:
         return jnp.where(flag.reshape(flag.shape + (1,) * (left.ndim - flag.ndim)), left, right)

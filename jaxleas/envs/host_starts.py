@@ -16,9 +16,9 @@ class HostPool:
     """Valid candidates for the next starts.
 
     Attributes:
-        state: of each valid candidate.
-        group: number of the group that each belongs to.
-        drawn: how many candidates there were, valid or not.
+        state: state of each valid candidate.
+        group: number of the group of each valid candidate.
+        drawn: number of candidates that were drawn, valid or not.
     """
 
     state: Any
@@ -31,10 +31,10 @@ class HostPool:
 
     @classmethod
     def of(cls, starts: Starts) -> "HostPool":
-        """Return the valid ones of starts.
+        """Return a pool of the valid starts.
 
         Raises:
-            InputError: there is no valid one: no episode could begin.
+            InputError: no start is valid: no episode could begin.
         """
         valid = np.flatnonzero(np.asarray(starts.valid))
         if not len(valid):
@@ -50,7 +50,7 @@ class HostPool:
     def draw_picks(
         self, generator: np.random.Generator, shape: tuple[int, ...]
     ) -> Int[np.ndarray, "*shape"]:
-        """Return indices of candidates, each as likely as any other."""
+        """Return indices of candidates, drawn uniformly."""
         return generator.integers(len(self), size=shape)
 
     def take(self, pick: Int[np.ndarray, " count"]) -> tuple[Any, Int[np.ndarray, " count"]]:
@@ -63,9 +63,9 @@ class HostPool:
         """Give a fresh start to the robots whose episode is over; leave the others alone.
 
         Args:
-            done: which episodes are over.
+            done: whether each episode is over.
             state: state of the episodes.
-            pick: candidate that each robot would get.
+            pick: index of the candidate that each robot would get.
         """
         over = np.flatnonzero(done)
         if not len(over):

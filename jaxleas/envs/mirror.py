@@ -1,4 +1,4 @@
-"""Left and right swapped, as an order and a sign of the values of a vector."""
+"""Mirroring left and right, as an order and a sign for the values of a vector."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from jaxtyping import Float
 
 @dataclass(frozen=True)
 class Mirror:
-    """What becomes of a vector when left and right are swapped: `sign * vector[order]`.
+    """The image of a vector when left and right are swapped: `sign * vector[order]`.
 
     Attributes:
-        order: place in the vector that each value of its image is taken from.
+        order: index in the vector from which each value of its image is taken.
         sign: 1 or -1 for each value of the image.
     """
 
@@ -33,7 +33,7 @@ class Mirror:
         Args:
             rows: number of rows.
             columns: number of columns.
-            lateral_axis: 0 or 1: the axis that runs from right to left.
+            lateral_axis: index (0 or 1) of the axis that runs from right to left.
         """
         places = np.flip(np.arange(rows * columns).reshape(rows, columns), axis=lateral_axis)
         return cls(tuple(map(int, places.ravel())), (1.0,) * places.size)
@@ -53,7 +53,7 @@ class Mirror:
         return self.without_signs(vector) * sign.reshape((1,) * (vector.ndim - 1) + (-1,))
 
     def without_signs(self, vector: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
-        """Return the image of what has no sign, such as deviations: values change place alone."""
+        """Return the image of unsigned values, such as deviations: they only change place."""
         if self.order == tuple(range(len(self.order))):
             return vector
         order = jnp.asarray(self.order, jnp.int32)

@@ -1,4 +1,4 @@
-"""The one place where tasks are named."""
+"""The one place that names the tasks."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from jaxleas.envs.environment import Task
 from jaxleas.types.errors import InputError
 
 DEFAULT_TASK = "steering"
-"""Task of configurations that name none: those written before there was another."""
+"""Task of configurations that name no task: they were written when there was only one."""
 
 
 def _require_task(name: str, item: Any) -> None:
@@ -19,7 +19,7 @@ def _require_task(name: str, item: Any) -> None:
 
 
 PAGES: Registry[Any] = Registry("page of a task", {"steering": "jaxleas.viewer.web_page:page_of"})
-"""Pages on which a task's exported policy runs by itself, in a browser."""
+"""Pages on which a task's exported policy runs in a browser, without a server."""
 
 TASKS: Registry[type[Task]] = Registry(
     "task", {"steering": "jaxleas.envs.steering.task:Steering"}, _require_task

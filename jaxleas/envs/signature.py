@@ -1,7 +1,7 @@
-"""What a policy is shown and what it answers: named parts of an observation, heads of an action.
+"""The interface of a policy: named parts of its observation, and heads of its action.
 
 Between task and network an observation is one vector, all parts one after another, each flattened
-row by row; so storing, scaling, mirroring and learning know nothing of parts.
+row by row; so storing, scaling, mirroring and learning do not depend on parts.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,14 +28,14 @@ class Part:
     """One part of an observation: a vector [n], or a map [rows, columns].
 
     Attributes:
-        name: name of the part, of its ONNX input, too.
-        shape: of its values.
+        name: name of the part, and of its ONNX input.
+        shape: shape of its values.
         mean: middle of each value's range, in its unit: one number, or one for each value, flat.
-        deviation: half of each value's range, likewise: (value - mean) / deviation is what the
-            network sees.
-        mirror: what becomes of the flattened values when left and right are swapped; None where
-            there is no such symmetry.
-        critic_only: whether the critic alone sees it, in training.
+        deviation: half of each value's range, likewise: the network sees
+            (value - mean) / deviation.
+        mirror: image of the flattened values when left and right are swapped; None where there is
+            no such symmetry.
+        critic_only: whether only the critic sees the part, in training.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Signature:
-    """Parts of the observation and heads of the action, in their order.
+    """Parts of the observation and heads of the action, in order.
 
     Attributes:
         parts: parts of the observation.
@@ -80,7 +80,7 @@ class Signature:
 
     @cached_property
     def size(self) -> int:
-        """Values in an observation."""
+        """Number of values in an observation."""
         return sum(part.size for part in self.parts)
 
     @cached_property
@@ -97,22 +97,22 @@ class Signature:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether it is known what becomes of everything when left and right are swapped."""
+        """Whether all parts and heads have a mirror."""
         return all(part.mirror for part in self.parts) and all(
             head.symmetric for head in self.heads
         )
 
     @cached_property
     def mirror(self) -> Mirror:
-        """What becomes of an observation when left and right are swapped."""
+        """The image of an observation when left and right are swapped."""
         return Mirror.join([part.mirror for part in self.parts if part.mirror is not None])
 
     def pack(self, observation: Any) -> Any:
         """Return an observation as one vector.
 
         Args:
-            observation: arrays [*batch, *shape] by the parts' names; where there is one part, the
-                array alone. JAX's or NumPy's.
+            observation: arrays [*batch, *shape] by the parts' names; where there is only one
+                part, the array alone. Arrays are of JAX or NumPy.
 
         Returns:
             An array [*batch, size].
@@ -125,7 +125,7 @@ class Signature:
         return _join(flat)
 
     def for_actor(self, observation: Any) -> Any:
-        """Return what the actor sees of packed observations: an array [*batch, seen]."""
+        """Return the part of packed observations that the actor sees: an array [*batch, seen]."""
         if len(self.seen) == len(self.parts):
             return observation
         ends = np.cumsum([part.size for part in self.parts])
@@ -138,12 +138,12 @@ class Signature:
 
     @cached_property
     def action_size(self) -> int:
-        """Numbers in a raw action of all heads."""
+        """Length of a raw action of all heads."""
         return sum(head.size for head in self.heads)
 
     @cached_property
     def logits(self) -> int:
-        """Numbers that the actor's network answers."""
+        """Length of the answer of the actor's network."""
         return sum(sum(head.logits) for head in self.heads)
 
     def distributions(self, logits: Float[Array, "*batch logits"]) -> tuple[Any, ...]:
@@ -154,7 +154,7 @@ class Signature:
         )
 
     def draw_noise(self, key: Key[Array, ""], shape: tuple[int, ...]) -> tuple[Array, ...]:
-        """Draw the chance of samples in bulk, for each head [*shape, noise]."""
+        """Draw the noise of samples in bulk, for each head [*shape, noise]."""
         keys = [key] if len(self.heads) == 1 else jax.random.split(key, len(self.heads))
         return tuple(
             head.draw_noise(each, shape) for head, each in zip(self.heads, keys, strict=True)
@@ -168,19 +168,19 @@ class Signature:
         return raw[0] if len(raw) == 1 else jnp.concatenate(raw, axis=-1)
 
     def action(self, raw: Float[Array, "*batch action_size"]) -> Any:
-        """Return the action that the environment takes: by head, or of the only head alone."""
+        """Return the action that the environment takes: by head, or that of the only head alone."""
         return self._named(
             [head.action(each) for head, each in zip(self.heads, self.raw(raw), strict=True)]
         )
 
     def mode(self, logits: Float[Array, "*batch logits"]) -> Any:
-        """Return the action without chance, as `action` does."""
+        """Return the deterministic action, in the form that `action` returns."""
         return self._named(
             [head.mode(*each) for head, each in zip(self.heads, self._by_head(logits), strict=True)]
         )
 
     def command(self, action: Any) -> Any:
-        """Return an action in physical units, by head, or of the only head alone."""
+        """Return an action in physical units: by head, or that of the only head alone."""
         if len(self.heads) == 1:
             return self.heads[0].command(action)
         return {head.name: head.command(action[head.name]) for head in self.heads}

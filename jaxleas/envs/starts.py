@@ -13,11 +13,11 @@ from jaxleas.envs.environment import Starts, select
 
 @struct.dataclass
 class StartPool:
-    """Candidates for the next starts, with those that are valid listed first.
+    """Candidates for the next starts, with the valid ones listed first.
 
     Attributes:
-        state: of each candidate.
-        group: number of the group that each candidate belongs to.
+        state: state of each candidate.
+        group: number of the group of each candidate.
         order: indices of the candidates, the valid ones first.
         valid_count: number of valid candidates.
     """
@@ -29,7 +29,7 @@ class StartPool:
 
 
 def pool_of(starts: Starts) -> StartPool:
-    """Return starts as a pool: those that are not valid are kept, shapes are fixed, never used."""
+    """Return starts as a pool; invalid ones are kept (shapes are fixed) but never used."""
     count = len(starts.valid)
     return StartPool(
         state=starts.state,
@@ -48,8 +48,8 @@ def take(pool: StartPool, key: Key[Array, ""], count: int) -> tuple[Any, Int[Arr
 def draw_picks(
     pool: StartPool, key: Key[Array, ""], shape: tuple[int, ...]
 ) -> Int[Array, "*shape"]:
-    """Return indices of valid candidates, each as likely as any other."""
-    # By one random number each, where `randint` takes two; what it is off by is one in 2^13.
+    """Return indices of valid candidates, drawn uniformly."""
+    # One random number each, where `randint` takes two; the bias is at most one in 2^13.
     count = jnp.maximum(pool.valid_count, 1)
     place = jax.random.uniform(key, shape) * count.astype(jnp.float32)
     return pool.order[jnp.minimum(place.astype(jnp.int32), count - 1)]
@@ -61,12 +61,12 @@ def restart_where(
     """Give a fresh start to the robots whose episode is over; leave the others alone.
 
     Args:
-        done: which episodes are over.
+        done: whether each episode is over.
         state: state of the episodes.
         pool: fresh starts.
-        pick: candidate that each robot would get (`draw_picks`).
+        pick: index of the candidate that each robot would get (`draw_picks`).
     """
-    # The others look at candidate 0, all at the same one: it stays in the cache.
+    # The other robots all read candidate 0, which stays in the cache.
     pick = jnp.where(done, pick, 0)
     fresh = jax.tree.map(lambda leaf: leaf.at[pick].get(mode="promise_in_bounds"), pool.state)
     return select(done, fresh, state)

@@ -6,7 +6,7 @@ from typing import Any
 
 from jaxleas.types import InputError
 
-RECORDING_KEY = 20_221_128  # of the walks that are recorded: the same ones for the same policy
+RECORDING_KEY = 20_221_128  # seed of the recorded walks: always the same for the same policy
 
 
 def export(
@@ -22,13 +22,13 @@ def export(
     """Export the best policy of a run as ONNX and StableHLO, compared with JAX first.
 
     Args:
-        run: the run folder; with --page an .onnx does, too, and is exported no further.
+        run: run folder; with --page an .onnx file will do, too, which is not exported again.
         out: folder for policy.onnx, policy.stablehlo and export.json; by default the run folder.
         page: folder for a page on which the policy walks, static files for any web host.
-        terrain: of the page: .npz height map, .json scene, .stl or .obj mesh.
-        start: of the page: x, y [m] and heading [deg]; by default a place with room around it.
+        terrain: terrain of the page: .npz height map, .json scene, .stl or .obj mesh.
+        start: x, y [m] and heading [deg] on the page; by default a place with room around it.
         runtime: folder dist of the npm package onnxruntime-web; by default npm fetches it once.
-        allow: code of your own that the run's configuration names, each MODULE:CLASS.
+        allow: your own code that the run's configuration names, as MODULE:CLASS.
     """
     if page is None or terrain is None:
         if page is not None or terrain is not None or start is not None or runtime is not None:
@@ -90,12 +90,12 @@ def _export_run(folder: Path, out: Path | None, allow: Sequence[str]) -> Path:
 
 
 def success_of(run: Path) -> list[dict[str, Any]] | None:
-    """Return the cells of the run's verdict on the transitions suite, if it was judged."""
+    """Return the cells of the run's results on the transitions suite, if it was evaluated."""
     from jaxleas.evaluation.examination import evaluation_file
     from jaxleas.files import read_json
 
     file = evaluation_file(run, "transitions")
     if not file.is_file():
         return None
-    verdict = read_json(file)
-    return verdict.get("cells") if isinstance(verdict, dict) else None
+    results = read_json(file)
+    return results.get("cells") if isinstance(results, dict) else None

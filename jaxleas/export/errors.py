@@ -1,7 +1,7 @@
-"""The export's own failure."""
+"""The error of an export."""
 
 from jaxleas.types import JaxleasError
 
 
 class ExportError(JaxleasError):
-    """An artifact does not compute what the policy computes; nothing was written."""
+    """An artifact computes something other than the policy does; nothing was written."""

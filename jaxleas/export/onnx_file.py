@@ -1,4 +1,4 @@
-"""A policy as an ONNX graph: physical units in, physical units out, nothing left to its user."""
+"""A policy as an ONNX graph, from physical units to physical units, with nothing left to add."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,7 +11,7 @@ from jaxleas.training.policy import Policy
 from jaxleas.types.onnx_nodes import OnnxNodes
 
 OPSET = 17
-IR_VERSION = 8  # of opset 17's time: read by every runtime since 2022
+IR_VERSION = 8  # the version that goes with opset 17: every runtime since 2022 reads it
 
 
 def build_onnx(policy: Policy, metadata: Mapping[str, str]) -> bytes:
@@ -24,8 +24,8 @@ def build_onnx(policy: Policy, metadata: Mapping[str, str]) -> bytes:
     for a choice. The batch is dynamic.
 
     Args:
-        policy: to be exported.
-        metadata: texts to be written into the file.
+        policy: policy to export.
+        metadata: texts to write into the file, by key.
     """
     import onnx
 
@@ -70,7 +70,7 @@ def _output(head: Head) -> Any:
 
 
 def _seen(nodes: OnnxNodes, policy: Policy) -> str:
-    """Join the parts, normalise and clip; return what the network is given."""
+    """Join the parts, normalise and clip; return the name of the network's input."""
     flat = [
         part.name
         if len(part.shape) == 1

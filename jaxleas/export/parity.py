@@ -1,4 +1,4 @@
-"""Do the artifacts compute what the policy computes? Asked on what a robot really sees."""
+"""Comparison of the artifacts with the policy, on observations that a robot really makes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,8 +12,8 @@ from jaxleas.export.recording import LEAST_OBSERVATIONS
 from jaxleas.export.stablehlo import stablehlo_from_bytes
 from jaxleas.training.policy import Policy
 
-TOLERANCE = 1e-5  # of each number of a command, in its unit and relative to its range beyond 1
-_MOST_TIES = 1e-3  # share of choices that may differ: where two are equally likely to the last bit
+TOLERANCE = 1e-5  # per number of a command, in its unit; relative to its range if beyond 1
+_MOST_TIES = 1e-3  # share of choices that may differ: two may be equally likely within rounding
 
 
 def largest_difference(
@@ -22,17 +22,17 @@ def largest_difference(
     stablehlo: bytes,
     observations: Float[np.ndarray, "count seen"],
 ) -> dict[str, float]:
-    """Return how far the artifacts are from JAX on these observations.
+    """Return the differences between the artifacts and JAX on these observations.
 
     Args:
-        policy: as JAX computes it.
-        onnx_file: content of the ONNX file, run by onnxruntime.
+        policy: policy as JAX computes it.
+        onnx_file: content of the ONNX file, which onnxruntime runs.
         stablehlo: serialised StableHLO.
-        observations: at least 10,000, in physical units.
+        observations: observations in physical units, at least 10,000.
 
     Returns:
-        The largest absolute difference of each, in the commands' units; of choices the share that
-        differs.
+        The largest absolute difference of each artifact, in the commands' units; for choices, the
+        share that differs.
 
     Raises:
         ExportError: there are too few observations, or a difference is above `TOLERANCE`.

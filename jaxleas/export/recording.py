@@ -1,4 +1,4 @@
-"""What a policy really sees: recorded from its own walks, and edge cases after them."""
+"""Observations that a policy really makes, recorded from its own walks, and edge cases."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,7 +17,7 @@ from jaxleas.training.policy import Policy
 
 LEAST_OBSERVATIONS = 10_000
 Record = Callable[[Policy, Any, Array], tuple[Any, Any]]
-"""Returns what every robot sees before each step, and whether it still walks then."""
+"""Returns the observation of every robot before each step, and whether it still walks then."""
 
 
 def record_observations(
@@ -30,19 +30,19 @@ def record_observations(
 ) -> Float[np.ndarray, "count seen"]:
     """Return 10,000 or more observations of the policy's own walks, and edge cases after them.
 
-    Robots walk from random starts, each to its end or for `steps` steps, in as many rounds as it
-    takes (a policy that falls at once needs more of them).
+    Robots walk from random starts, each until its episode ends or for `steps` steps, in as many
+    rounds as are needed (more of them for a policy that falls at once).
 
     Args:
-        policy: to be recorded.
-        task: what it walks in.
-        world: what the robots stand in.
-        key: randomness, consumed here.
-        robots: number of robots that walk at once.
-        steps: most steps of each.
+        policy: policy to record.
+        task: task of the policy.
+        world: world that the robots walk in.
+        key: random key, consumed here.
+        robots: number of robots that walk at the same time.
+        steps: largest number of steps of each robot.
 
     Returns:
-        What the actor sees, one vector each.
+        Observations as the actor sees them, one vector each.
     """
     record = _on_host(task, robots, steps) if task.on_host else _on_device(task, robots, steps)
     recorded: list[np.ndarray] = []
@@ -54,7 +54,7 @@ def record_observations(
 
 
 def _on_device(task: Task, robots: int, steps: int) -> Record:
-    """Return what records a round of a task that steps on the device, compiled once."""
+    """Return a function that records a round of a task that steps on the device, compiled once."""
     weights = task.weights(_numbers(task), 0.0)
 
     def record(policy: Policy, world: Any, key: Array) -> tuple[Array, Array]:
@@ -78,7 +78,7 @@ def _on_device(task: Task, robots: int, steps: int) -> Record:
 
 
 def _on_host(task: Task, robots: int, steps: int) -> Record:
-    """Return what records a round of a task that steps on the host."""
+    """Return a function that records a round of a task that steps on the host."""
     weights = task.weights(jax.tree.map(float, _numbers(task)), 0.0)
     act = jax.jit(lambda policy, seen: policy.signature.mode(policy.answer_vector(seen)))
 
@@ -108,7 +108,7 @@ def _numbers(task: Task) -> dict[str, Any]:
 
 
 def edge_cases(policy: Policy) -> Float[np.ndarray, "cases seen"]:
-    """Return observations at the ends of their ranges, and one value at a time far beyond."""
+    """Return observations at the ends of their ranges, and with one value at a time far beyond."""
     mean, deviation = np.asarray(policy.mean), np.asarray(policy.deviation)
     levels = (-1.0, -1e-6, 0.0, 1e-6, 1.0)
     whole = [mean + level * deviation for level in levels]

@@ -18,8 +18,8 @@ def to_stablehlo(policy: Policy) -> bytes:
     """Return a policy, weights inside, as serialised StableHLO with a symbolic batch.
 
     Args:
-        policy: to be exported; parts of the observation [batch, *shape], float32, to heads of the
-            action, in physical units: each by name, or the only one alone.
+        policy: policy to export: from parts of the observation [batch, *shape], float32, to heads
+            of the action, in physical units; each by name, or the only one alone.
     """
     (batch,) = jax_export.symbolic_shape("batch")
     shown = {
@@ -27,14 +27,14 @@ def to_stablehlo(policy: Policy) -> bytes:
         for part in policy.signature.seen
     }
     observation = next(iter(shown.values())) if len(shown) == 1 else shown
-    # The default lets accelerators round products to ten bits: no artifact to compare with others.
+    # The default lets accelerators round products to ten bits, too coarse to compare artifacts.
     with jax.default_matmul_precision("highest"):
         exported = jax_export.export(jax.jit(policy.__call__), platforms=PLATFORMS)(observation)
     return bytes(exported.serialize())
 
 
 def read_stablehlo(path: str | Path) -> Callable[[Any], Any]:
-    """Return the policy in a .stablehlo file: observation to command, as `to_stablehlo` says.
+    """Return the policy in a .stablehlo file: observation to command, as in `to_stablehlo`.
 
     Raises:
         InputError: the file is missing or not a serialised export.
@@ -43,7 +43,7 @@ def read_stablehlo(path: str | Path) -> Callable[[Any], Any]:
         return stablehlo_from_bytes(Path(path).read_bytes())
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
-    except Exception as error:  # flatbuffers and jax raise whatever they stumble over
+    except Exception as error:  # flatbuffers and jax raise exceptions of many kinds
         raise InputError(f"{path} is not a StableHLO policy: {error}") from error
 
 

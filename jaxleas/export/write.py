@@ -17,7 +17,7 @@ from jaxleas.export.stablehlo import PLATFORMS, to_stablehlo
 from jaxleas.files import write_bytes, write_json
 from jaxleas.training.policy import Policy
 
-VERSION = 1  # of export.json
+VERSION = 1  # format of export.json
 
 
 def export_policy(
@@ -30,14 +30,15 @@ def export_policy(
     """Write `policy.onnx`, `policy.stablehlo` and `export.json` into a folder, verified.
 
     Args:
-        policy: to be exported.
-        out: the folder.
-        observations: recorded from roll-outs, at least 10,000 (`record_observations`).
-        config_text: the training configuration, YAML.
-        success_table: what the policy was seen to do, any JSON value.
+        policy: policy to export.
+        out: folder for the artifacts.
+        observations: observations recorded from roll-outs, at least 10,000
+            (`record_observations`).
+        config_text: training configuration as YAML.
+        success_table: measured success of the policy, any JSON value.
 
     Returns:
-        What `export.json` holds.
+        The content of `export.json`.
 
     Raises:
         ExportError: an artifact differs from JAX by more than 1e-5; nothing is written then.
@@ -64,12 +65,12 @@ def export_policy(
     out = Path(out)
     write_bytes(out / "policy.onnx", onnx_file)
     write_bytes(out / "policy.stablehlo", stablehlo)
-    write_json(out / "export.json", record)  # last: its hashes vouch for the other two
+    write_json(out / "export.json", record)  # last: it holds the hashes of the other two
     return record
 
 
 def described(config: TaskConfig) -> dict[str, str]:
-    """Return what an exported policy of a task says about itself, each value a JSON text."""
+    """Return the description in an exported policy of a task, each value as JSON text."""
     return {key: json.dumps(value) for key, value in config.describe().items()}
 
 

@@ -1,4 +1,4 @@
-"""Plain files: written whole or not at all, read with errors that name the file and the key."""
+"""Plain files: written whole or not at all; errors in reading name the file and the key."""
 
 from jaxleas.files.atomic import (
     atomic_path,

@@ -1,4 +1,4 @@
-"""Writing: to a temporary name beside the target, flushed to disk, renamed, the folder flushed."""
+"""Atomic writing: write to a temporary file in the same folder, flush it, rename, flush again."""
 
 import errno
 import json
@@ -14,16 +14,16 @@ import numpy as np
 
 from jaxleas.types.errors import InputError
 
-# What `tempfile.mkstemp` makes of ".NAME." and the suffix: eight letters between them.
+# Names that `tempfile.mkstemp` makes of ".NAME." and the suffix: eight letters between them.
 _TEMPORARY = re.compile(r"\..+\.[a-z0-9_]{8}(\.[A-Za-z0-9]+)?")
 
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path beside `path`; on success it becomes `path`, else it vanishes.
+    """Yield a temporary path next to `path`; on success it becomes `path`, else it is removed.
 
     Args:
-        path: the file to be written; missing parent folders are made.
+        path: path of the file to write; missing parent folders are made.
 
     Raises:
         InputError: the file cannot be written (no permission, disk full, parent is a file).
@@ -72,7 +72,7 @@ def write_npz(path: str | Path, **arrays: np.ndarray) -> None:
 
 
 def sweep_temporaries(folder: str | Path) -> None:
-    """Remove what writers that were killed left behind in a folder that nobody else writes to."""
+    """Remove temporary files of killed writers from a folder that no other process writes to."""
     for path in Path(folder).glob(".*"):
         if _TEMPORARY.fullmatch(path.name) and path.is_file():
             path.unlink(missing_ok=True)
@@ -84,14 +84,14 @@ def _flush(path: Path) -> None:
 
 
 def _flush_folder(folder: Path) -> None:
-    """Make the new name itself survive a power cut, where the file system can."""
+    """Flush a folder, so that a new name survives a power cut, if the file system supports it."""
     if not hasattr(os, "O_DIRECTORY"):
         return
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(descriptor)
     except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.EBADF):  # it cannot
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.EBADF):  # not supported
             raise
     finally:
         os.close(descriptor)

@@ -1,4 +1,4 @@
-"""Digests of files: whether a file is still the one that was read before."""
+"""Digests of files, which show whether a file has changed since it was read."""
 
 import hashlib
 from pathlib import Path
@@ -13,7 +13,7 @@ def digest_of(path: str | Path) -> str:
     """Return the SHA-256 of a file, as hexadecimal digits.
 
     Raises:
-        InputError: the file is missing, no file, or cannot be read.
+        InputError: the file is missing, is not a file, or cannot be read.
     """
     if not is_file(path):
         what = "is no file" if Path(path).exists() else "does not exist"
@@ -32,8 +32,8 @@ def require_digest(path: str | Path, sha256: str | None) -> None:
     """Refuse a file that is not the one whose digest was recorded.
 
     Args:
-        path: file to be read again.
-        sha256: digest recorded before; None: any content will do.
+        path: path of the file to read again.
+        sha256: digest recorded before; None: any content is accepted.
 
     Raises:
         InputError: the file is missing, or has changed.

@@ -1,4 +1,4 @@
-"""JSON from anybody: parsed within bounds of size, depth and number, or refused in a sentence."""
+"""JSON from untrusted sources: parsed within bounds, or refused with a sentence."""
 
 import json
 import math
@@ -8,21 +8,22 @@ from jaxleas.types.errors import InputError
 
 MAX_BYTES = 64 * 2**20
 MAX_CONTAINERS = 4_000_000
-"""Objects and lists; of `[` and `{` in the text, so that strings count, too. They cost most memory:
-with both bounds no file takes more than about a gigabyte."""
+"""Largest number of `[` and `{` in the text (strings count, too): objects and lists cost most
+memory. With both bounds no file takes more than about a gigabyte."""
 MAX_DEPTH = 100
-MAX_DIGITS = 18  # of an integer: those of 64 bits
+MAX_DIGITS = 18  # in an integer, so that it fits into 64 bits
 
 
 def parse_json(text: bytes | str, where: str) -> Any:
     """Return the value that JSON holds; all its numbers are finite, all its text is Unicode.
 
     Args:
-        text: UTF-8.
-        where: names the file, for messages.
+        text: JSON text, in UTF-8 if bytes.
+        where: name of the file, for messages.
 
     Raises:
-        InputError: it is not JSON, too large, nested too deep, or holds a number beyond reason.
+        InputError: the text is not JSON, too large, nested too deep, or holds an unreasonable
+            number.
     """
     if len(text) > MAX_BYTES:
         raise InputError(f"{where} is {len(text)} bytes of JSON, more than the {MAX_BYTES} read")
@@ -69,7 +70,7 @@ def _refuse(where: str, number: str) -> NoReturn:
 
 
 def _require_plain(value: Any, where: str, surrogates: bool) -> None:
-    """Refuse what nests too deep, and text with half a character (it could not be written)."""
+    """Refuse values nested too deep, and text with lone surrogates (it could not be written)."""
     layer, depth = [value], 0
     while layer:
         if depth > MAX_DEPTH:
@@ -84,7 +85,7 @@ def _require_plain(value: Any, where: str, surrogates: bool) -> None:
                 inner.extend(each)
             elif surrogates and isinstance(each, str):
                 _require_unicode(each, where)
-        if not surrogates:  # only containers matter then
+        if not surrogates:  # then only containers matter
             inner = [each for each in inner if isinstance(each, dict | list)]
         layer, depth = inner, depth + 1
 

@@ -1,4 +1,4 @@
-"""Keys of JSON objects that somebody wrote by hand."""
+"""Keys of JSON objects that were written by hand."""
 
 import difflib
 from collections.abc import Iterable
@@ -8,10 +8,10 @@ from jaxleas.types.errors import InputError
 
 
 def refuse_misspelt_keys(where: str | Path, keys: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse a key that looks like a known one; others, a comment say, are let pass.
+    """Refuse a key that resembles a known one; other keys, such as a comment, are accepted.
 
     Raises:
-        InputError: says which key, and which was probably meant.
+        InputError: a key is probably misspelt; the message names it and the key meant.
     """
     names = tuple(known)
     for key in keys:

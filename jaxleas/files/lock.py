@@ -13,32 +13,32 @@ from jaxleas.files.lock_holder import LOCK, SILENCE, Holder, silence_of
 from jaxleas.types.errors import InputError
 
 PULSE = 10.0
-"""The holder touches its lock this often [s]."""
+"""Interval at which the holder touches its lock [s]."""
 PATIENCE = 0.2
-"""A lock may be held that long by one that only asks who holds it [s]."""
+"""Longest time for which a process that only asks for the holder may hold the lock [s]."""
 _LOG = logging.getLogger("jaxleas")
 
 
 class InUseError(InputError):
-    """A folder that another process holds; it may let go of it."""
+    """A folder is held by another process, which may release it later."""
 
 
 class FolderLock:
-    """Holds a folder until `close`, or until this process ends by whatever cause.
+    """Lock on a folder, held until `close`, or until this process ends for any reason.
 
     The kernel keeps the lock (`flock`), so that the death of its holder frees it: there are no
-    stale locks on one machine. Network file systems mostly pass it on between machines; where one
-    does not, the lock's pulse does its work: the holder touches the file every `PULSE` seconds, and
-    another machine takes it over only after `SILENCE` seconds without.
+    stale locks on one machine. Most network file systems pass the lock on between machines; where
+    one does not, a pulse replaces it: the holder touches the file every `PULSE` seconds, and
+    another machine takes the lock over only after `SILENCE` seconds without a touch.
 
     Args:
-        folder: to hold; must exist.
-        what: to call it in a sentence, as "the run folder".
-        remedy: what else one could do, as "name another --run-dir".
+        folder: path of the folder to hold, which must exist.
+        what: name of the folder in messages, such as "the run folder".
+        remedy: alternative to suggest in messages, such as "name another --run-dir".
 
     Raises:
         InUseError: another process holds it.
-        InputError: it cannot be locked.
+        InputError: the folder cannot be locked.
     """
 
     def __init__(self, folder: str | Path, what: str, remedy: str) -> None:
@@ -54,11 +54,11 @@ class FolderLock:
         threading.Thread(target=self._beat, name="folder lock", daemon=True).start()
 
     def close(self) -> None:
-        """Let others write."""
+        """Release the lock, so that other processes can write."""
         if self._descriptor is not None:
             self._over.set()
             descriptor, self._descriptor = self._descriptor, None
-            os.ftruncate(descriptor, 0)  # left on purpose, not by dying
+            os.ftruncate(descriptor, 0)  # released on purpose, not by dying
             os.close(descriptor)
 
     def __enter__(self) -> Self:
@@ -107,7 +107,7 @@ class FolderLock:
             try:
                 if self._descriptor is not None:
                     os.utime(self._descriptor)
-            except OSError:  # closed meanwhile, or the server is away for a moment
+            except OSError:  # closed meanwhile, or the server is briefly unavailable
                 continue
 
 
@@ -119,7 +119,7 @@ def _open(path: Path, name: str) -> int:
 
 
 def _lock(descriptor: int) -> None:
-    """Take a lock; wait a moment for one that is held only to ask who holds it (`is_held`)."""
+    """Take a lock; wait briefly if it is only held to ask for the holder (`is_held`)."""
     until = time.monotonic() + PATIENCE
     while True:
         try:

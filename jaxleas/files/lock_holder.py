@@ -1,4 +1,4 @@
-"""Who holds a folder, as the lock in it tells."""
+"""The holder of a folder, as written in its lock."""
 
 import fcntl
 import json
@@ -13,12 +13,12 @@ from typing import Any
 LOCK = "lock"
 """Name of the lock file in a folder."""
 SILENCE = 60.0
-"""A holder on another machine that has not touched its lock for so long is dead [s]."""
+"""Time after which a holder on another machine that has not touched its lock counts as dead [s]."""
 
 
 @dataclass(frozen=True)
 class Holder:
-    """The process that holds a folder, as written into its lock; 0 and "" where there is none."""
+    """The process that holds a folder, as written into its lock; 0 and "" if there is none."""
 
     process: int
     host: str
@@ -30,7 +30,7 @@ class Holder:
             said: Any = json.loads(os.pread(descriptor, 1024, 0).decode(errors="replace"))
         except ValueError:  # no holder, or cut short by a full disk
             return cls(0, "")
-        if isinstance(said, int):  # as versions before 0.2 wrote it
+        if isinstance(said, int):  # format of versions before 0.2
             return cls(said, "")
         known = isinstance(said, dict) and isinstance(said.get("process"), int)
         return cls(said["process"], str(said.get("host", ""))) if known else cls(0, "")
@@ -42,11 +42,11 @@ class Holder:
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether the holder is on another machine, whose death frees no lock here."""
+        """Return whether the holder is on another machine, whose death frees no lock here."""
         return self.host not in ("", socket.gethostname())
 
     def text(self) -> str:
-        """Return what is written into the lock."""
+        """Return the text to write into the lock."""
         return json.dumps({"process": self.process, "host": self.host}) + "\n"
 
     def __str__(self) -> str:
@@ -55,7 +55,7 @@ class Holder:
 
 
 def is_held(folder: str | Path) -> bool:
-    """Whether a process on any machine holds a folder; asks with the lock's own two questions.
+    """Return whether a process on any machine holds a folder, by the same two checks as the lock.
 
     Args:
         folder: folder that `FolderLock` may hold.
@@ -65,21 +65,21 @@ def is_held(folder: str | Path) -> bool:
     except OSError:
         return False
     try:
-        # Shared, so that two that ask at once do not take each other for the holder.
+        # Shared, so that two processes that ask at once do not mistake each other for the holder.
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
         return _shows_signs_of_life(descriptor, Path(folder))
     except BlockingIOError:
         return True
-    except OSError:  # a file system without locks: the pulse alone can tell
+    except OSError:  # a file system without locks: only the pulse counts
         return _shows_signs_of_life(descriptor, Path(folder))
     finally:
         os.close(descriptor)
 
 
 def silence_of(descriptor: int, folder: Path) -> float:
-    """Return for how long a lock has not been touched [s].
+    """Return the time since a lock was last touched [s].
 
-    The clock is that of the file system's host, or this machine's where nothing can be written.
+    The clock is that of the file system's host, or this machine's if nothing can be written.
     """
     touched = os.fstat(descriptor).st_mtime
     try:
@@ -90,5 +90,5 @@ def silence_of(descriptor: int, folder: Path) -> float:
 
 
 def _shows_signs_of_life(descriptor: int, folder: Path) -> bool:
-    """Whether a holder on another machine, whose lock does not get here, has touched it lately."""
+    """Return whether a holder on another machine, whose lock is not visible here, is alive."""
     return Holder.of(descriptor).is_elsewhere and silence_of(descriptor, folder) < SILENCE

@@ -1,8 +1,8 @@
-"""Arrays of a .npz from anybody: every claim of the file is checked before memory is taken for it.
+"""Arrays of an untrusted .npz: every claim of the file is checked before memory is allocated.
 
-NumPy's own reader takes the memory that a header asks for before it has read a byte, and raises a
-dozen kinds of exceptions over damaged files. Plain arrays need little: a zip archive of members
-`NAME.npy`, each a short header and the numbers.
+NumPy's own reader allocates the memory that a header asks for before it has read a byte, and raises
+a dozen kinds of exceptions for damaged files. Plain arrays are simple: a zip archive of members
+`NAME.npy`, each with a short header and the numbers.
 """
 
 import math
@@ -21,10 +21,10 @@ MAX_DIMENSIONS = 8
 MAX_HEADER = 10_000
 KINDS = "biufSU"  # no Python objects, no records, no dates
 
-# What zipfile and zlib raise over bytes that are not what they claim to be.
+# Exceptions that zipfile and zlib raise for damaged bytes.
 _DAMAGES = (
     EOFError,
-    NotImplementedError,  # of a compression or encryption nobody uses
+    NotImplementedError,  # an unusual compression or encryption
     OSError,
     OverflowError,
     RuntimeError,  # an encrypted member
@@ -39,7 +39,7 @@ _HEADER = re.compile(
 
 
 class DamagedError(Exception):
-    """Bytes that are no plain .npz; its words say why."""
+    """The bytes are not a plain .npz; the message says why."""
 
 
 def read_arrays(
@@ -48,14 +48,14 @@ def read_arrays(
     """Return the arrays of a .npz file, each checked against its checksum.
 
     Args:
-        path: an existing file.
-        max_bytes: that they may unpack to; if None, what is not compressed is read whatever its
-            size, and what is compressed is refused.
-        only: the one array to read, if not all.
+        path: path of an existing file.
+        max_bytes: largest total size of the unpacked arrays; None: uncompressed arrays of any size
+            are read, and compressed ones are refused.
+        only: name of the one array to read; None: all.
 
     Raises:
-        DamagedError: it is no plain .npz.
-        InputError: it unpacks to more than `max_bytes`.
+        DamagedError: the file is not a plain .npz.
+        InputError: the file unpacks to more than `max_bytes`.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -110,13 +110,13 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
             raise DamagedError(
                 f"{entry.filename} is {entry.file_size} bytes, which do not make shape {shape}"
             )
-        # As much as is there: `read()` would unpack whatever the member holds before it is cut.
+        # Only the stated size: `read()` would unpack all that the member holds before cutting it.
         content = stream.read(count * kind.itemsize)
         if len(content) != count * kind.itemsize:
             raise DamagedError(f"{entry.filename} is cut short")
-    flat = np.frombuffer(bytearray(content), kind, count)  # a bytearray's numbers may be changed
+    flat = np.frombuffer(bytearray(content), kind, count)  # a bytearray is writable
     array = flat.reshape(shape, order="F" if fortran else "C")
-    if not kind.isnative:  # JAX takes no other byte order
+    if not kind.isnative:  # JAX accepts only the native byte order
         array = array.astype(kind.newbyteorder("="))
     if kind.kind == "U":
         _require_unicode(array, entry.filename)
@@ -142,7 +142,7 @@ def _header(start: bytes, stream: object) -> tuple[np.dtype, tuple[int, ...], bo
         raise DamagedError(f"an array is of the unknown type {found[1].decode()}") from error
     numbers = found[3].replace(b",", b" ").split()
     shape = tuple(int(each) for each in numbers)
-    # bfloat16 is written as two bytes of no meaning to NumPy.
+    # bfloat16 is written as two bytes without meaning to NumPy.
     if kind.kind not in KINDS and kind.str != "|V2":
         raise DamagedError(f"an array is of type {kind}: numbers, truth values and text are read")
     if len(shape) > MAX_DIMENSIONS or (kind.itemsize == 0 and kind.kind not in "SU"):

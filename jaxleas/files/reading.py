@@ -1,4 +1,4 @@
-"""Reading: every failure is an InputError that names the file, the key and what would do."""
+"""Reading: every failure is an InputError that names the file, the key and a remedy."""
 
 import os
 from pathlib import Path
@@ -27,9 +27,9 @@ def read_npz(
     """Return the arrays of a .npz file; Python objects inside it are refused.
 
     Args:
-        path: the file.
-        required: names of arrays that must be there.
-        max_bytes: that all arrays together may take.
+        path: path of the file.
+        required: names of arrays that the file must have.
+        max_bytes: largest total size of the unpacked arrays.
 
     Raises:
         InputError: the file is missing, damaged, too large, or lacks an array.
@@ -52,13 +52,13 @@ def read_bytes(path: str | Path, max_bytes: int) -> bytes:
     """Return the content of a file.
 
     Raises:
-        InputError: it is missing, unreadable, or larger than `max_bytes`.
+        InputError: the file is missing, unreadable, or larger than `max_bytes`.
     """
     _require_file(path)
     try:
         with Path(path).open("rb") as stream:
             size = os.fstat(stream.fileno()).st_size
-            content = stream.read(min(size, max_bytes) + 1)  # `read` takes so much at once
+            content = stream.read(min(size, max_bytes) + 1)  # `read` allocates this much at once
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
     if len(content) > max_bytes:
@@ -67,15 +67,15 @@ def read_bytes(path: str | Path, max_bytes: int) -> bytes:
 
 
 def require_version(content: dict[str, Any], version: int, where: str | Path) -> None:
-    """Refuse a file of another version; one that states none is of the first.
+    """Refuse a file of another version; a file that states no version is of the first.
 
     Args:
-        content: of the file.
-        version: that is read.
-        where: names the file, for the message.
+        content: content of the file.
+        version: version that can be read.
+        where: name of the file, for the message.
 
     Raises:
-        InputError: says which version it is of.
+        InputError: the file is of another version, which the message names.
     """
     found = content.get("version", 1)
     if found != version or isinstance(found, bool):
@@ -86,7 +86,7 @@ def require_version(content: dict[str, Any], version: int, where: str | Path) ->
 
 
 def require_version_array(arrays: dict[str, np.ndarray], version: int, where: str | Path) -> None:
-    """Refuse a .npz whose array `version` says another one; see `require_version`."""
+    """Refuse a .npz whose array `version` states another one; see `require_version`."""
     found = arrays.get("version")
     if found is not None:
         stated = found.item() if found.size == 1 else f"an array of shape {found.shape}"
@@ -94,7 +94,7 @@ def require_version_array(arrays: dict[str, np.ndarray], version: int, where: st
 
 
 def is_file(path: str | Path) -> bool:
-    """Whether there is such a file; a name that no file can have is none."""
+    """Return whether a file of this name exists; an impossible name counts as missing."""
     try:
         return Path(path).is_file()
     except (OSError, ValueError):
@@ -107,5 +107,5 @@ def _require_file(path: str | Path) -> None:
             raise InputError(f"{path} is a folder, not a file")
         if not Path(path).is_file():
             raise InputError(f"{path} does not exist")
-    except (OSError, ValueError) as error:  # a name that no file can have
+    except (OSError, ValueError) as error:  # an impossible name
         raise InputError(f"{str(path)!r:.200} is no file: {error}") from error

@@ -1,4 +1,4 @@
-"""Plain values as typed ones: what a file holds and a reader counts on, checked in one place."""
+"""Typed values from plain ones: the content of files, checked in one place."""
 
 import json
 from functools import cache
@@ -12,18 +12,18 @@ T = TypeVar("T")
 
 
 def read_typed(kind: type[T] | Any, path: str | Path, what: str, version: int | None = None) -> T:
-    """Return what a JSON file holds, as a value of a type.
+    """Return the content of a JSON file as a value of a type.
 
     Args:
-        kind: a pydantic model, a dataclass, a TypedDict, or lists and mappings of them.
-        path: of the file.
-        what: it should be: "figure file".
-        version: that is read. Looked at first: a file of another one may well be of another form,
-            and its version is then what is wrong with it.
+        kind: pydantic model, dataclass, TypedDict, or lists and mappings of them.
+        path: path of the file.
+        what: name of the kind of file, for messages, such as "figure file".
+        version: version that can be read. It is checked first: a file of another version may have
+            another form, and then the version is the error to report.
 
     Raises:
-        InputError: the file cannot be read, or is no such thing: the first key that is wrong is
-            named.
+        InputError: the file cannot be read, or is not of this kind; the message names the first
+            wrong key.
     """
     content = read_json(path)
     if version is not None and isinstance(content, dict):
@@ -35,12 +35,13 @@ def typed(kind: type[T] | Any, value: Any, sentence: str) -> T:
     """Return a plain value as a value of a type.
 
     Args:
-        kind: as above.
-        value: as `read_json` gives it.
-        sentence: what the refusal begins with.
+        kind: type, as for `read_typed`.
+        value: plain value, as `read_json` returns it.
+        sentence: beginning of the error message.
 
     Raises:
-        InputError: the sentence, the first key that is wrong, and what would do.
+        InputError: the value is not of the type; the message has the sentence, the first wrong
+            key, and what would do.
     """
     from pydantic import ValidationError
 

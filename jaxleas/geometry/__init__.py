@@ -1,4 +1,4 @@
-"""Rotations, boxes, polytopes; whether polygons meet them, and what lies inside."""
+"""Rotations, boxes, polytopes, and the intersections of polygons with polytopes."""
 
 from jaxleas.geometry.boxes import Box
 from jaxleas.geometry.clipping import clip_polygon

@@ -1,4 +1,4 @@
-"""Boxes whose sides lie along the axes of some frame."""
+"""Boxes whose sides lie along the axes of a frame."""
 
 from dataclasses import dataclass
 

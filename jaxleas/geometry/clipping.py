@@ -5,21 +5,22 @@ from jaxtyping import Float
 
 from jaxleas.geometry.polytopes import Polytope
 
-_CUTS = 1e-9  # a face that takes away less than this [m] takes nothing
-_SAME_POINT = 1e-6  # corners nearer than this [m] are one
+_CUTS = 1e-9  # a face that cuts away less than this [m] cuts nothing
+_SAME_POINT = 1e-6  # corners closer than this [m] are merged
 
 
 def clip_polygon(
     vertices: Float[np.ndarray, "V 3"], polytope: Polytope
 ) -> Float[np.ndarray, "W 3"]:
-    """Return the corners of the part inside, in the same order round (Sutherland and Hodgman 1974).
+    """Return the corners of the part inside, in the same winding (Sutherland and Hodgman 1974).
 
     Args:
-        vertices: of a convex planar polygon, in the polytope's frame [m].
-        polytope: convex.
+        vertices: corners of a convex planar polygon, in the polytope's frame [m].
+        polytope: convex polytope.
 
     Returns:
-        `vertices` itself if all of it is inside; fewer than three rows if next to nothing is.
+        `vertices` itself if the whole polygon is inside; fewer than three rows if almost nothing
+        is.
     """
     excess = vertices @ polytope.normals.T - polytope.offsets
     cutting = np.flatnonzero((excess > _CUTS).any(axis=0))
@@ -35,7 +36,7 @@ def clip_polygon(
 
 
 def _clip(vertices: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
-    """Keep what is on the inner side of one face."""
+    """Return the part of a polygon on the inner side of one face."""
     excess = vertices @ normal - offset
     kept = []
     for index, here in enumerate(excess):

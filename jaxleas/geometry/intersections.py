@@ -1,4 +1,4 @@
-"""Does a convex polygon meet a convex polytope? Exactly, for many polygons at once."""
+"""Exact intersection tests of convex polygons with a convex polytope, for many polygons at once."""
 
 from collections.abc import Iterable
 
@@ -9,14 +9,14 @@ from jaxleas.geometry.polytopes import Polytope
 from jaxleas.types.errors import InputError
 
 TOUCHING = 1e-9
-"""Sets nearer than this [m] meet: touching counts."""
+"""Distance below which sets meet [m]: touching counts."""
 
 
 def pack_polygons(polygons: Iterable[Float[np.ndarray, "V 3"]]) -> Float[np.ndarray, "N W 3"]:
     """Stack polygons of different sizes into one array by repeating their last vertex.
 
     Args:
-        polygons: each a convex planar polygon [m]; a packed array is returned as it is.
+        polygons: convex planar polygons [m]; a packed array is returned as it is.
 
     Raises:
         InputError: a polygon has fewer than three vertices of three numbers.
@@ -38,15 +38,15 @@ def pack_polygons(polygons: Iterable[Float[np.ndarray, "V 3"]]) -> Float[np.ndar
 def polygons_meet_polytope(
     vertices: Float[np.ndarray, "N W 3"], polytope: Polytope
 ) -> Bool[np.ndarray, " N"]:
-    """Tell which polygons have a point in common with the polytope.
+    """Return which polygons have a point in common with the polytope.
 
     Two convex sets of this kind meet in one of two ways: an edge of the polygon enters the
     polytope, or the polytope cuts the polygon's plane wholly inside the polygon; then any point of
-    the cut tells.
+    the cut decides.
 
     Args:
-        vertices: of convex planar polygons, packed, in the polytope's frame [m].
-        polytope: bounded.
+        vertices: corners of convex planar polygons, packed, in the polytope's frame [m].
+        polytope: bounded polytope.
     """
     meets = _edges_enter(vertices, polytope)
     rest = np.flatnonzero(~meets)
@@ -55,7 +55,7 @@ def polygons_meet_polytope(
 
 
 def _edges_enter(vertices: np.ndarray, polytope: Polytope) -> Bool[np.ndarray, " N"]:
-    # Cyrus-Beck: each face leaves of the edge start + t (end - start) an interval of t.
+    # Cyrus-Beck: each face limits the edge start + t (end - start) to an interval of t.
     start = polytope.offsets + TOUCHING - vertices @ polytope.normals.T  # slack, [N, W, F]
     end = np.roll(start, -1, axis=1)
     descent = start - end
@@ -69,7 +69,7 @@ def _edges_enter(vertices: np.ndarray, polytope: Polytope) -> Bool[np.ndarray, "
 
 def _cut_lies_inside(vertices: np.ndarray, polytope: Polytope) -> Bool[np.ndarray, " N"]:
     ahead = np.roll(vertices, -1, axis=1)
-    # Newell's vector about the first vertex: normal to the polygon, however it is padded.
+    # Newell's vector about the first vertex is normal to the polygon, whatever the padding.
     origin = vertices[:, :1]
     normal = np.cross(vertices - origin, ahead - origin).sum(axis=1)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)

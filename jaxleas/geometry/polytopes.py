@@ -11,9 +11,9 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 from jaxleas.geometry.boxes import Box
 from jaxleas.types.errors import InputError
 
-_SAME_FACE = 1e-7  # faces of one plane, split by the hull's triangulation, agree better than this
+_SAME_FACE = 1e-7  # largest difference of faces in one plane that the hull's triangulation split
 MAX_FACES = 10_000
-_ON_FACE = 1e-7  # a vertex this near to a face [m] lies on it
+_ON_FACE = 1e-7  # largest distance of a vertex that lies on a face [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,8 +21,8 @@ class Polytope:
     """The bounded convex set {x : K x <= k}, with unit rows in K.
 
     Attributes:
-        normals: K, the outward unit normals of the faces.
-        offsets: k, the distance of each face from the origin along its normal [m].
+        normals: outward unit normals of the faces, K.
+        offsets: distance of each face from the origin along its normal, k [m].
 
     Raises:
         InputError: shapes disagree, or a number is not finite.
@@ -44,7 +44,7 @@ class Polytope:
 
     @classmethod
     def from_points(cls, points: Float[np.ndarray, "P 3"]) -> "Polytope":
-        """Return the convex hull of `points` [m], each plane once.
+        """Return the convex hull of `points` [m], with each plane once.
 
         Raises:
             InputError: the points span no volume.
@@ -66,16 +66,16 @@ class Polytope:
     def contains(
         self, points: Float[np.ndarray, "*batch 3"], tolerance: float = 1e-9
     ) -> Bool[np.ndarray, "*batch"]:
-        """Tell which points lie inside, or outside of no face by more than `tolerance` [m]."""
+        """Return which points lie inside, or outside every face by at most `tolerance` [m]."""
         return np.all(points @ self.normals.T <= self.offsets + tolerance, axis=-1)
 
     def z_interval(
         self, points_xy: Float[np.ndarray, "P 2"]
     ) -> tuple[Float[np.ndarray, " P"], Float[np.ndarray, " P"]]:
-        """Cut the vertical line over each point with the polytope.
+        """Intersect the vertical line through each point with the polytope.
 
         Args:
-            points_xy: where the lines stand [m].
+            points_xy: horizontal positions of the lines [m].
 
         Returns:
             The lowest and the highest z [m] of each line inside the polytope; both NaN where the
@@ -98,12 +98,12 @@ class Polytope:
         )
 
     def mirrored(self) -> "Polytope":
-        """Return the mirror image in the plane y = 0: the left limb's set made the right's."""
+        """Return the mirror image in the plane y = 0, which swaps left and right limbs."""
         return Polytope(self.normals * np.array([1.0, -1.0, 1.0]), self.offsets)
 
     @cached_property
     def vertices(self) -> Float[np.ndarray, "V 3"]:
-        """Corners [m], each once.
+        """The corners, each once [m].
 
         Raises:
             InputError: the polytope is empty, flat or unbounded.
@@ -120,7 +120,7 @@ class Polytope:
 
     @cached_property
     def edges(self) -> Float[np.ndarray, "E 2 3"]:
-        """Edges as pairs of end points [m]: corners that share at least two faces."""
+        """The edges as pairs of end points [m]: corners that share at least two faces."""
         corners = self.vertices
         on_face = np.abs(corners @ self.normals.T - self.offsets) < _ON_FACE
         shared = on_face.astype(int) @ on_face.T.astype(int)

@@ -1,4 +1,4 @@
-"""Turning vectors about the vertical: all the rotation an upright root needs (T 3.3.1)."""
+"""Rotations of vectors about the vertical, the only ones that an upright root needs (T 3.3.1)."""
 
 from functools import reduce
 
@@ -14,8 +14,8 @@ def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"])
     """Turn one vector per robot about the vertical: x' = x cos - y sin, y' = x sin + y cos.
 
     Args:
-        vector: of two or three components [any unit]; the third, if there is one, is kept.
-        yaw: angle to turn by, counter-clockwise seen from above [rad].
+        vector: vector of two or three components [any unit]; a third component is kept.
+        yaw: angle of rotation, counter-clockwise seen from above [rad].
 
     Returns:
         The turned vector, of the same shape.
@@ -51,23 +51,23 @@ def rotate_to_root(
         yaw: heading of the root [rad].
 
     Returns:
-        The vectors as the root sees them, of the same shape.
+        The vectors along the root's axes, of the same shape.
     """
     return rotate_by_yaw(vector, -yaw[..., None])
 
 
 def squared_length(vector: Float[Array, "*batch D"]) -> Float[Array, "*batch"]:
     """Return the squared length of one vector per robot [its unit squared]."""
-    # Written out: XLA:CPU hands a sum over three numbers to a library, which is slow at it.
+    # Written out, because XLA:CPU calls a library for a sum over three numbers, which is slow.
     components = [vector[..., axis] for axis in range(vector.shape[-1])]
     return reduce(lambda total, each: total + each * each, components[1:], components[0] ** 2)
 
 
 def wrap_angle(angle: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-    """Bring an angle [rad] into [-pi, pi)."""
+    """Wrap an angle [rad] into [-pi, pi)."""
     # Not the remainder: XLA:CPU calls a function of the C library for each one.
     wrapped = angle - 2 * jnp.pi * jnp.floor((angle + jnp.pi) / (2 * jnp.pi))
-    # Rounding may leave it just outside, on either side.
+    # Rounding may leave the result just outside, on either side.
     return jnp.where(wrapped >= jnp.pi, -jnp.pi, jnp.maximum(wrapped, -jnp.pi))
 
 
@@ -79,6 +79,6 @@ def bound_norm(vector: Float[Array, "*batch D"], limit: float) -> Float[Array, "
 
 
 def wrap_angle_on_host(angle: Float[np.ndarray, "*batch"] | float) -> Float[np.ndarray, "*batch"]:
-    """Bring an angle [rad] into [-pi, pi), as `wrap_angle` does, in NumPy and double precision."""
+    """Wrap an angle [rad] into [-pi, pi), as `wrap_angle` does, in NumPy and double precision."""
     wrapped = (np.asarray(angle, np.float64) + np.pi) % (2.0 * np.pi) - np.pi
-    return np.where(wrapped >= np.pi, -np.pi, wrapped)  # rounding may leave it just outside
+    return np.where(wrapped >= np.pi, -np.pi, wrapped)  # rounding may leave the result just outside

@@ -1,4 +1,4 @@
-"""Jobs done in order on a thread of their own, so that the training need not wait for the disk."""
+"""Jobs done in order on a separate thread, so that the training does not wait for the disk."""
 
 import queue
 import threading
@@ -10,37 +10,37 @@ Job = Callable[[], None]
 
 
 class Background:
-    """Does jobs one after the other, in the order in which they came.
+    """Queue of jobs that are done one after another, in the order of their submission.
 
-    A job that fails is the last: its error comes up at the next `submit`, or at `close`, and the
-    jobs that wait are dropped. Leaving the context waits for what is under way, also when the run
+    A job that fails is the last: its error is raised by the next `submit`, or by `close`, and the
+    waiting jobs are dropped. Leaving the context waits for the remaining jobs, also when the run
     was interrupted.
 
     Args:
-        waiting: jobs that may wait; a further one waits in `submit` until there is room.
+        waiting: number of jobs that may wait; `submit` blocks a further one until there is room.
     """
 
     def __init__(self, waiting: int = 2) -> None:
         self._jobs: queue.Queue[Job | None] = queue.Queue(waiting)
         self._error: BaseException | None = None
-        # A daemon: a second Ctrl-C ends the process at once, and no file suffers by it.
+        # A daemon: a second Ctrl-C ends the process at once, and damages no file.
         self._thread = threading.Thread(target=self._work, name="background", daemon=True)
         self._thread.start()
 
     def submit(self, job: Job) -> None:
-        """Have a job done; what it reads must not change until then.
+        """Queue a job; the values that it reads must not change until it is done.
 
         Raises:
-            Exception: that of an earlier job.
+            Exception: an earlier job failed with this error.
         """
         self._raise()
         self._jobs.put(job)
 
     def close(self) -> None:
-        """Wait until all is done.
+        """Wait until all jobs are done.
 
         Raises:
-            Exception: that of a job.
+            Exception: a job failed with this error.
         """
         if self._thread.is_alive():
             self._jobs.put(None)
@@ -70,5 +70,5 @@ class Background:
                 continue
             try:
                 job()
-            except BaseException as error:  # not swallowed: raised where the training waits
+            except BaseException as error:  # kept, and raised where the training waits
                 self._error, broken = error, True

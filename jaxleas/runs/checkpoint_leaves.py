@@ -9,17 +9,17 @@ import numpy as np
 from jaxleas.types.errors import InputError
 
 KEYS = ("threefry2x32", "rbg", "unsafe_rbg")
-"""Kinds of random keys that JAX has."""
+"""JAX's kinds of random keys."""
 
 
 def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Return what each leaf is, and copies of those that are arrays.
+    """Return the description of each leaf, and copies of the leaves that are arrays.
 
     Args:
-        state: a pytree of arrays, typed random keys and Python numbers.
+        state: pytree of arrays, typed random keys and Python numbers.
 
     Returns:
-        One plain JSON entry a leaf; and the arrays by name.
+        One plain JSON entry per leaf; and the arrays by name.
 
     Raises:
         TypeError: a leaf is something else.
@@ -43,14 +43,14 @@ def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
 def unpack(
     like: Any, entries: list[Any], arrays: dict[str, np.ndarray], source: str, partial: bool
 ) -> Any:
-    """Return the pytree that `pack` took apart, in the structure of `like`.
+    """Return the pytree that was given to `pack`, in the structure of `like`.
 
     Args:
-        like: a pytree of the same names, shapes and types (arrays or `jax.eval_shape`'s).
-        entries: what `pack` returned.
-        arrays: what `pack` returned.
-        source: where they come from, for the error's sentence.
-        partial: take only the leaves that `like` names; otherwise all must match.
+        like: pytree of the same names, shapes and types (of arrays, or from `jax.eval_shape`).
+        entries: entries that `pack` returned.
+        arrays: arrays that `pack` returned.
+        source: name of their source, for error messages.
+        partial: whether to take only the leaves that `like` names; otherwise all must match.
 
     Raises:
         InputError: names, shapes or types differ from those of `like`.
@@ -74,7 +74,7 @@ def unpack(
 
 
 def _is_restorable(leaf: Any, entry: dict[str, Any], arrays: dict[str, np.ndarray]) -> bool:
-    """Tell whether what was kept is of the type and shape of `leaf`, whatever its entry says."""
+    """Return whether the stored value has the type and shape of `leaf`, whatever its entry says."""
     if isinstance(leaf, bool | int | float):
         return type(entry.get("value")) is type(leaf)
     array = arrays.get(entry["name"])
@@ -100,7 +100,7 @@ def _restore(leaf: Any, entry: dict[str, Any], arrays: dict[str, np.ndarray]) ->
     array = arrays[entry["name"]]
     if "random_key" in entry:
         return jax.random.wrap_key_data(jnp.array(array), impl=entry["random_key"])
-    array = array.view(leaf.dtype)  # .npz knows bfloat16 only as two bytes
+    array = array.view(leaf.dtype)  # .npz stores bfloat16 as two plain bytes
     # A copy, so that JAX owns the memory and may donate it.
     return array if isinstance(leaf, np.ndarray | np.generic) else jnp.array(array)
 

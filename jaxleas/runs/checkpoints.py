@@ -1,9 +1,9 @@
 """Checkpoints of the full training state: written whole or not at all, checked when read.
 
-One .npz file a checkpoint, rather than an orbax `CheckpointManager`. Measured on 49 MB of state
-(two shared cores, orbax 0.12.8): 0.10 s a save against 0.18-0.24 s, one file against 21. After one
-flipped bit in its array file orbax restored wrong numbers without a word, 7 times of 7; every array
-of an .npz carries a checksum. Over truncated files orbax wrote 5,300 lines of tracebacks.
+There is one .npz file per checkpoint, not an orbax `CheckpointManager`. Measured on 49 MB of state
+(two shared cores, orbax 0.12.8): 0.10 s per save against 0.18-0.24 s, one file against 21. After
+one flipped bit in its array file orbax silently restored wrong numbers, 7 times out of 7; every
+array of an .npz carries a checksum. For truncated files orbax wrote 5,300 lines of tracebacks.
 """
 
 import json
@@ -26,7 +26,7 @@ _LOG = logging.getLogger("jaxleas")
 
 
 class NoCheckpointError(InputError):
-    """There is no checkpoint, or none that can be read."""
+    """There is no checkpoint, or no readable one."""
 
 
 class _DamageError(Exception):
@@ -35,12 +35,12 @@ class _DamageError(Exception):
 
 @dataclass(frozen=True)
 class PackedState:
-    """A state as it will be written: a copy, so that the training may go on meanwhile.
+    """A state as it will be written: a copy, so that the training can continue meanwhile.
 
     Attributes:
-        step: training steps done.
-        manifest: everything but the arrays, JSON.
-        arrays: by name.
+        step: number of training steps done.
+        manifest: everything except the arrays, as JSON.
+        arrays: arrays by name.
     """
 
     step: int
@@ -52,8 +52,8 @@ class Checkpoints:
     """The last few checkpoints of a run, and the best.
 
     Args:
-        folder: where they lie; made at the first save.
-        keep_last: how many of the newest are kept beside the best.
+        folder: folder of the checkpoints; it is made at the first save.
+        keep_last: number of newest checkpoints to keep besides the best.
     """
 
     def __init__(self, folder: str | Path, keep_last: int = 2) -> None:
@@ -65,16 +65,17 @@ class Checkpoints:
     def save(
         self, step: int, state: Any, note: dict[str, Any], best_score: float | None = None
     ) -> None:
-        """Write the state at `step`; a kill at any moment leaves the earlier ones usable.
+        """Write the state at `step`; a kill at any moment leaves the earlier checkpoints usable.
 
-        Checkpoints of later steps are removed: they belong to a future that was abandoned when an
-        earlier one was resumed.
+        Checkpoints of later steps are removed: they became obsolete when an earlier one was
+        resumed.
 
         Args:
-            step: training steps done, not negative.
-            state: any pytree of arrays, typed random keys and Python numbers.
-            note: plain JSON values that travel with the state.
-            best_score: higher is better; None or NaN means that this one never counts as best.
+            step: number of training steps done, not negative.
+            state: pytree of arrays, typed random keys and Python numbers.
+            note: plain JSON values to store with the state.
+            best_score: score, of which higher is better; None or NaN: this checkpoint never counts
+                as best.
 
         Raises:
             InputError: the file cannot be written (disk full, no permission).
@@ -85,13 +86,13 @@ class Checkpoints:
     def packed(
         step: int, state: Any, note: dict[str, Any], best_score: float | None = None
     ) -> PackedState:
-        """Return a copy of the state that `write` takes, maybe on another thread; see `save`."""
+        """Return a copy of the state for `write`, possibly on another thread; see `save`."""
         entries, arrays = pack(state)
         manifest = {"format": FORMAT, "step": step, "score": best_score, "note": note}
         return PackedState(step, json.dumps({**manifest, "leaves": entries}).encode(), arrays)
 
     def write(self, packed: PackedState) -> None:
-        """Write what `packed` returned; see `save`.
+        """Write the state that `packed` returned; see `save`.
 
         Raises:
             InputError: the file cannot be written (disk full, no permission).
@@ -102,29 +103,30 @@ class Checkpoints:
         self._prune(packed.step)
 
     def steps(self) -> list[int]:
-        """Return the steps of which a checkpoint lies here, oldest first."""
+        """Return the steps that have a checkpoint, oldest first."""
         return sorted(int(path.stem.split("_")[1]) for path in self.folder.glob("step_*.npz"))
 
     def latest(self, like: State, partial: bool = False) -> tuple[int, State, dict[str, Any]]:
         """Return step, state and note of the newest checkpoint that can be read.
 
-        A damaged one is passed over; the log then says what was lost, in steps.
+        A damaged checkpoint is skipped; the log then states the number of steps lost.
 
         Args:
-            like: a pytree of the same structure, shapes and types (arrays or `jax.eval_shape`'s).
-            partial: take only the leaves that `like` names; otherwise all must match.
+            like: pytree of the same structure, shapes and types (of arrays, or from
+                `jax.eval_shape`).
+            partial: whether to take only the leaves that `like` names; otherwise all must match.
 
         Raises:
             NoCheckpointError: there is no checkpoint, or none can be read.
-            InputError: it is of another state.
+            InputError: the checkpoint is of another state.
         """
         return self._first_readable(self.steps()[::-1], like, partial)
 
     def best(self, like: State, partial: bool = False) -> tuple[int, State, dict[str, Any]]:
-        """Return the checkpoint with the highest score (of equals the latest); see `latest`.
+        """Return the checkpoint with the highest score (the latest of equals); see `latest`.
 
         Raises:
-            InputError: as `latest`, or no checkpoint has a score.
+            InputError: `latest` would raise it, or no checkpoint has a score.
         """
         ranked = self._ranked()
         if self.steps() and not ranked:
@@ -154,7 +156,7 @@ class Checkpoints:
         raise NoCheckpointError(f"no usable checkpoint in {self.folder}: {what}")
 
     def _ranked(self) -> list[int]:
-        """Return the steps with a finite score, best first, of those whose manifest is readable."""
+        """Return the steps that have a finite score and a readable manifest, best first."""
         scores = {}
         for step in self.steps():
             try:
@@ -170,14 +172,14 @@ class Checkpoints:
         keep = {*ours[-self.keep_last :], *[s for s in self._ranked() if s <= newest][:1]}
         for step in set(self.steps()) - keep:
             self._path(step).unlink(missing_ok=True)
-        sweep_temporaries(self.folder)  # of a save that was killed
+        sweep_temporaries(self.folder)  # left by a save that was killed
 
     def _path(self, step: int) -> Path:
         return self.folder / f"step_{step:012d}.npz"
 
 
 def _read(path: Path, manifest_only: bool = False) -> tuple[Any, dict[str, np.ndarray]]:
-    """Return manifest and arrays; a checkpoint may be of any size, but unpacks to no more."""
+    """Return manifest and arrays; the file may have any size, but cannot unpack to more."""
     try:
         arrays = read_arrays(path, max_bytes=None, only="manifest" if manifest_only else None)
         manifest = parse_json(arrays.pop("manifest").tobytes(), "its manifest")

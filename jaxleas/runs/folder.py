@@ -1,9 +1,9 @@
-"""A run folder: everything one training leaves behind, held by one writer at a time.
+"""A run folder: all files of one training, held by one writer at a time.
 
 config.yaml       the resolved configuration
 provenance.json   format, versions, git revision, command, machine
 provenance.diff   uncommitted changes, if there were any
-metrics.jsonl     one JSON object a line
+metrics.jsonl     one JSON object per line
 tensorboard/      the same for TensorBoard
 checkpoints/      the last few full states and the best
 lock              held while a process writes
@@ -22,10 +22,10 @@ FORMAT = 1
 
 
 class RunFolder:
-    """One run's folder; make it with `create` or `open`, and `close` it to let others write.
+    """The folder of a run; make it with `create` or `open`, and `close` it to let others write.
 
     Attributes:
-        path: the folder.
+        path: path of the folder.
     """
 
     def __init__(self, path: Path, lock: FolderLock | None) -> None:
@@ -37,9 +37,9 @@ class RunFolder:
         """Make the folder of a new run and hold it for writing.
 
         Args:
-            path: a folder that does not exist, or is empty.
-            config_yaml: the resolved configuration.
-            command: the command line that started the run.
+            path: path of a folder that does not exist, or is empty.
+            config_yaml: resolved configuration.
+            command: command line that started the run.
 
         Raises:
             InputError: the folder is taken, in use, or cannot be written.
@@ -50,7 +50,7 @@ class RunFolder:
             _require_vacant(path)
             lock = _take_lock(path)
             try:
-                _require_vacant(path)  # again, now that nobody else can fill it
+                _require_vacant(path)  # again, now that no other process can fill it
                 run = cls(path, lock)
                 run._write_records(config_yaml, command)
             except BaseException:
@@ -67,12 +67,14 @@ class RunFolder:
         """Open an existing run folder.
 
         Args:
-            path: the folder.
-            writing: hold it, so that no other process can write (to resume); reading needs no hold.
-            needs_checkpoint: refuse a run that has saved no state yet.
+            path: path of the folder.
+            writing: whether to hold it (to resume), so that no other process can write; reading
+                needs no hold.
+            needs_checkpoint: whether to refuse a run that has saved no state yet.
 
         Raises:
-            InputError: it is missing, not a run folder, half-written, of another format, or in use.
+            InputError: the folder is missing, not a run folder, half-written, of another format, or
+                in use.
         """
         path = Path(path)
         if not path.exists():
@@ -92,7 +94,7 @@ class RunFolder:
 
     @property
     def config(self) -> Path:
-        """The resolved configuration."""
+        """The file of the resolved configuration."""
         return self.path / "config.yaml"
 
     @property
@@ -102,11 +104,11 @@ class RunFolder:
 
     @property
     def metrics(self) -> Path:
-        """The metrics, one JSON object a line."""
+        """The file of the metrics, one JSON object per line."""
         return self.path / "metrics.jsonl"
 
     def close(self) -> None:
-        """Let other processes write."""
+        """Release the folder, so that other processes can write."""
         if self._lock is not None:
             self._lock.close()
             self._lock = None
@@ -135,7 +137,7 @@ def policy_file(run: str | Path) -> Path:
     """Return the file of a run's best policy.
 
     Raises:
-        InputError: the folder is missing, no run folder, half-written, or of another version.
+        InputError: the folder is missing, not a run folder, half-written, or of another version.
     """
     folder = RunFolder.open(run, needs_checkpoint=False)
     file = folder.path / "policy.npz"
@@ -155,8 +157,8 @@ def _require_vacant(path: Path) -> None:
         _take_lock(path).close()  # "in use" says more than "exists already"
     if {entry.name for entry in path.iterdir()} - {"lock"}:
         raise InputError(
-            f"{path} exists already and is not empty; go on with --resume {path}, or name another "
-            "--run-dir"
+            f"{path} exists already and is not empty; continue with --resume {path}, or name"
+            " another --run-dir"
         )
 
 
@@ -179,6 +181,6 @@ def _require_run(path: Path, needs_checkpoint: bool) -> None:
         )
     if needs_checkpoint and not any((path / "checkpoints").glob("step_*.npz")):
         raise InputError(
-            f"the run folder {path} is half-written: it has no checkpoint yet; go on with "
+            f"the run folder {path} is half-written: it has no checkpoint yet; continue with "
             f"train.py --resume {path}"
         )

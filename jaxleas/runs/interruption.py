@@ -6,12 +6,12 @@ from typing import Self
 
 
 class Interruption:
-    """Within this context the first SIGINT or SIGTERM only raises a flag.
+    """Context in which the first SIGINT or SIGTERM only sets `requested`.
 
-    A second one acts as usual: the person means it.
+    A second one acts as usual.
 
     Attributes:
-        requested: whether a signal has come.
+        requested: whether a signal has arrived.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Metrics of a run: one JSON object a line, and the same numbers for all who watch."""
+"""Metrics of a run: one JSON object per line, and the same numbers for all watchers."""
 
 import json
 import logging
@@ -19,18 +19,18 @@ _LOG = logging.getLogger("jaxleas")
 
 
 class MetricsLog:
-    """Appends to `metrics.jsonl` in a run folder, and tells the same to all who watch.
+    """Log that appends to `metrics.jsonl` in a run folder, and sends the same to all watchers.
 
     Append a step's metrics *before* saving its checkpoint: a run killed between the two then
-    repeats the step, and its lines end the same as those of a run never killed. Only the wall time,
-    key "seconds", differs.
+    repeats the step, and its lines end up the same as those of a run that was never killed, except
+    for the wall time, key "seconds".
 
     Args:
-        folder: the run folder.
-        truncate_after_step: when resuming, the step resumed from: later lines are dropped.
-        watch: watchers, by name; they never stop or slow a training.
-        config: of the run, as plain values, for the watchers.
-        say: told a sentence about a watcher that fails.
+        folder: run folder.
+        truncate_after_step: when resuming, the step to resume from: later lines are dropped.
+        watch: names of the watchers; they never stop or slow a training.
+        config: configuration of the run as plain values, for the watchers.
+        say: function that is called with a sentence about a watcher that fails.
 
     Raises:
         InputError: the file cannot be written, or a watcher is not installed.
@@ -60,8 +60,8 @@ class MetricsLog:
         """Write one line; a number that is not finite is written as null.
 
         Args:
-            step: training steps done.
-            metrics: by name; a slash groups them.
+            step: number of training steps done.
+            metrics: metrics by name; a slash groups them.
 
         Raises:
             InputError: the file cannot be written (disk full).
@@ -71,16 +71,16 @@ class MetricsLog:
         row |= {name: value if math.isfinite(value) else None for name, value in numbers.items()}
         try:
             self._stream.write(json.dumps(row, allow_nan=False) + "\n")
-            self._stream.flush()  # into the kernel: survives the death of this process
+            self._stream.flush()  # into the kernel, where it survives the death of this process
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
         self._audience.row(int(step), numbers)
 
     def sync(self) -> None:
-        """Have all lines on the disk; may be called from another thread.
+        """Write all lines to the disk; this may be called from another thread.
 
         Raises:
-            InputError: they cannot be written.
+            InputError: the lines cannot be written.
         """
         try:
             os.fsync(self._stream.fileno())
@@ -88,7 +88,7 @@ class MetricsLog:
             raise InputError(f"cannot write {self.path}: {error.strerror or error}") from error
 
     def close(self, status: Status = "finished") -> None:
-        """Close the file; give the watchers a moment to finish."""
+        """Close the file; wait a moment for the watchers to finish."""
         self._stream.close()
         self._audience.end(status)
 
@@ -105,7 +105,7 @@ class MetricsLog:
 
 
 def name_of(folder: Path) -> str:
-    """Return the name of a run for people: its folder, seen from here if it lies below."""
+    """Return the displayed name of a run: its folder, relative to the current one if inside it."""
     whole = folder.resolve()
     here = Path.cwd()
     return str(whole.relative_to(here)) if whole.is_relative_to(here) else whole.name
@@ -122,7 +122,7 @@ def read_metrics(path: str | Path) -> list[dict[str, Any]]:
     """Return the rows of a `metrics.jsonl`, without a last line that was only half written.
 
     Raises:
-        InputError: the file is missing, or another line of it is no row.
+        InputError: the file is missing, or any other line is not a row.
     """
     if not Path(path).is_file():
         raise InputError(f"{path} does not exist: the run has logged nothing yet")
@@ -130,7 +130,7 @@ def read_metrics(path: str | Path) -> list[dict[str, Any]]:
 
 
 def _rows_to_keep(path: Path, last_step: int) -> list[str]:
-    """Return the lines up to a step; say so where a damaged line has cost some of them."""
+    """Return the lines up to a step; log a warning if a damaged line lost some of them."""
     rows, problem = _readable_rows(path)
     kept = [(line, row["step"]) for line, row in rows if row["step"] <= last_step]
     if problem and len(kept) == len(rows) and (not kept or kept[-1][1] < last_step):
@@ -140,10 +140,10 @@ def _rows_to_keep(path: Path, last_step: int) -> list[str]:
 
 
 def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Return each whole line, as it is and parsed.
+    """Return each complete line, raw and parsed.
 
     Raises:
-        InputError: a line is no row.
+        InputError: a line is not a row.
     """
     rows, problem = _readable_rows(path)
     if problem:
@@ -152,7 +152,7 @@ def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
 
 
 def _readable_rows(path: Path) -> tuple[list[tuple[str, dict[str, Any]]], str]:
-    """Return the whole lines up to the first that is no row, and what is wrong with that one."""
+    """Return the complete lines before the first that is not a row, and the error in that one."""
     try:
         content = path.read_bytes() if path.is_file() else b""
     except OSError as error:

@@ -1,4 +1,4 @@
-"""How far a training is: a live line in a terminal, a plain line now and then elsewhere."""
+"""Progress of a training: a live line in a terminal, a plain line now and then elsewhere."""
 
 import os
 import sys
@@ -12,16 +12,16 @@ import rich.progress
 
 
 class Progress:
-    """Shows steps done, steps/s, whatever else is measured, and the time left.
+    """Display of steps done, steps per second, further measures, and the time left.
 
     In a terminal one line is redrawn in place. Without one, or with CI or NO_COLOR set, a plain
     line is written every `every_seconds`, and one at the end.
 
     Args:
-        total: training steps to do in all.
-        start: steps done before (when resuming).
+        total: total number of training steps.
+        start: number of steps done before (when resuming).
         every_seconds: pause between plain lines [s].
-        stream: where to write; standard error by default.
+        stream: stream to write to; standard error by default.
     """
 
     def __init__(
@@ -44,11 +44,11 @@ class Progress:
         self._live = None if plain else self._make_live()
 
     def update(self, step: int, values: Mapping[str, str] | None = None) -> None:
-        """Say that `step` steps are done.
+        """Show that `step` steps are done.
 
         Args:
-            step: training steps done in all.
-            values: more to show, written out, as {"return": "3.1", "held out": "98 %"}.
+            step: total number of training steps done.
+            values: further values to show, as text: {"return": "3.1", "held out": "98 %"}.
         """
         now = time.monotonic()
         rate = (step - self._done) / max(now - self._last, 1e-9)
@@ -64,7 +64,7 @@ class Progress:
             self._write()
 
     def say(self, sentence: str) -> None:
-        """Write a sentence of its own, above the live line."""
+        """Write a sentence above the live line."""
         if self._live is not None:
             self._live.console.print(sentence, markup=False, highlight=False)
         else:
@@ -82,7 +82,7 @@ class Progress:
         trace: TracebackType | None,
     ) -> None:
         if self._live is not None:
-            self._live.stop()  # gives the cursor back, also after Ctrl-C
+            self._live.stop()  # restores the cursor, also after Ctrl-C
         elif self._line:
             self._write()
 

@@ -1,4 +1,4 @@
-"""Where a run comes from: versions, git revision and changes, command, machine."""
+"""Origin of a run: versions, git revision and changes, command, machine."""
 
 import os
 import platform
@@ -16,10 +16,10 @@ _SECONDS = 10.0  # a git that takes longer (a network file system) is not worth 
 
 
 def collect_provenance(command: Sequence[str]) -> tuple[dict[str, Any], str]:
-    """Return what is to be known of this process, as plain JSON values, and the uncommitted diff.
+    """Return the provenance of this process as plain JSON values, and the uncommitted diff.
 
     Args:
-        command: the command line that started the run.
+        command: command line that started the run.
 
     Returns:
         The record, in which `git` is null where the package does not run from its repository; and
@@ -44,7 +44,7 @@ def collect_provenance(command: Sequence[str]) -> tuple[dict[str, Any], str]:
 
 
 def _git_state() -> tuple[dict[str, Any] | None, str]:
-    # Installed inside somebody else's repository, the package is in a repository but not of it.
+    # Installed inside another repository, the package is in a repository but not part of it.
     if _git("ls-files", "--error-unmatch", "jaxleas/__init__.py") is None:
         return None, ""
     revision = _git("rev-parse", "HEAD")
@@ -57,14 +57,14 @@ def _git_state() -> tuple[dict[str, Any] | None, str]:
 
 
 def _git(*arguments: str) -> str | None:
-    """Return what a git command says about the source tree, or None where it fails."""
+    """Return the output of a git command on the source tree; None if it fails."""
     try:
         done = subprocess.run(
             ["git", "-C", str(_SOURCE), *arguments],
             capture_output=True,
             timeout=_SECONDS,
             check=False,
-            env={**os.environ, "GIT_OPTIONAL_LOCKS": "0"},  # never in a user's way
+            env={**os.environ, "GIT_OPTIONAL_LOCKS": "0"},  # never blocks the user's git
         )
     except (OSError, subprocess.TimeoutExpired):
         return None

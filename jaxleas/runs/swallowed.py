@@ -1,4 +1,4 @@
-"""Ctrl-C that comes at a moment when Python throws its exception away, raised again."""
+"""Ctrl-C at a moment when Python discards its exception: the signal is sent again."""
 
 import _thread
 import signal
@@ -9,17 +9,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 PAUSE = 0.02
-"""Between the loss of an interrupt and the next try [s]; what has swallowed it is over by then."""
+"""Pause between a lost interrupt and the next try [s]; the callback has ended by then."""
 
 
 @contextmanager
 def interrupts_kept() -> Iterator[None]:
-    """Within this context no KeyboardInterrupt is lost.
+    """Keep every KeyboardInterrupt from being lost within this context.
 
     A signal handler runs wherever the main thread is. If that is a weakref callback, a `__del__` or
     a callback of the garbage collector, Python reports the exception to `sys.unraisablehook` and
-    goes on as if nothing had happened; JAX is full of weakref callbacks. Here the signal is sent
-    once more, shortly after: whatever handles SIGINT by then takes it.
+    continues as if nothing had happened; JAX has many weakref callbacks. Here the signal is sent
+    again, shortly after: the handler of SIGINT at that time receives it.
     """
     before, is_over = sys.unraisablehook, threading.Event()
 
@@ -27,7 +27,7 @@ def interrupts_kept() -> Iterator[None]:
         if not issubclass(lost.exc_type, KeyboardInterrupt):
             before(lost)
         else:
-            # Bare, since `threading.Thread.start` waits, and this can be any moment at all.
+            # Low-level, since `threading.Thread.start` waits, and this can run at any moment.
             _thread.start_new_thread(_send_again, (is_over.is_set,))
 
     sys.unraisablehook = hook

@@ -1,6 +1,6 @@
 """Sweeps over configurations, and populations of policies trained in one compiled program.
 
-Names are imported when first used: a sweep starts many workers, and each needs only some.
+Names are imported on first use: a sweep starts many workers, and each needs only some names.
 """
 
 from importlib import import_module

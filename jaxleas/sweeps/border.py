@@ -1,4 +1,4 @@
-"""What a sweep's file states, checked whole against the run configuration before anything runs."""
+"""Checks of a whole sweep file against the run configuration, before anything runs."""
 
 import typing
 from collections.abc import Collection, Mapping
@@ -18,21 +18,21 @@ from jaxleas.training.ppo_params import swept_fields
 from jaxleas.training.run_config import load_run_config, pinned
 from jaxleas.types.errors import InputError
 
-# What measures must not be searched, or every trial is asked another question.
+# Sections that define the measure must not be searched: trials would not be comparable.
 MEASURES = ("held_out.", "final.")
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep that can run.
+    """A checked sweep, which can run.
 
     Attributes:
-        source: its file, for sentences.
-        config: as stated.
-        base: the run configuration that trials start from.
+        source: path of its file, for messages.
+        config: configuration of the sweep, as stated.
+        base: run configuration that trials start from.
         whole: names of the searched fields that hold whole numbers.
         vectorised: whether trials train together in one program.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS.
     """
 
     source: str
@@ -44,15 +44,15 @@ class Sweep:
 
     @property
     def name(self) -> str:
-        """Of the study in a storage."""
+        """Name of the study in a storage."""
         return Path(self.source).stem
 
     def run_config(self, values: Mapping[str, Any], seed: int) -> RunConfig:
         """Return a training's configuration.
 
         Args:
-            values: of the searched fields.
-            seed: of the training.
+            values: values of the searched fields.
+            seed: seed of the training.
 
         Raises:
             InputError: the values do not fit each other.
@@ -64,11 +64,11 @@ def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
     """Read a sweep's file and the configuration it names.
 
     Args:
-        path: the file.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        path: path of the file.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the file, the key, and what would do.
+        InputError: the value is invalid; the message names the file, the key, and what would do.
     """
     path = Path(path)
     config = load_config(SweepConfig, path)
@@ -82,16 +82,17 @@ def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
 def check_sweep(
     config: SweepConfig, base: RunConfig, source: str, allow: Collection[str] = ()
 ) -> Sweep:
-    """Return a sweep, or refuse it.
+    """Return the checked sweep of a configuration.
 
     Args:
-        config: as stated.
-        base: the run configuration that trials start from.
-        source: what sentences begin with.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        config: configuration of the sweep, as stated.
+        base: run configuration that trials start from.
+        source: name of the file, with which error messages begin.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: the space names what cannot be searched, or an objective cannot be measured.
+        InputError: the space names a field that cannot be searched, or an objective cannot be
+            measured.
     """
     whole = frozenset(
         name
@@ -111,7 +112,7 @@ def check_dimension(name: str, dimension: Dimension, base: RunConfig, source: st
     """Return whether the field holds whole numbers.
 
     Raises:
-        InputError: it cannot be searched, or not like this.
+        InputError: the field cannot be searched, or not in this way.
     """
     field = require_field(type(base), name, source)
     where = f"{source}.{name}"
@@ -156,7 +157,7 @@ def _check_conditions(space: Mapping[str, Dimension], source: str) -> None:
 
 
 def allowed(wanted: Any) -> list[Any]:
-    """Return the values that a condition names: one or a list of several."""
+    """Return the values that a condition names, which are one value or a list of several."""
     return wanted if isinstance(wanted, list) else [wanted]
 
 
@@ -183,7 +184,7 @@ def _check_exact(objective: Exact, base: RunConfig, where: str) -> None:
 
 
 def _vectorised(config: SweepConfig, base: RunConfig, source: str, on_host: bool) -> bool:
-    """Return whether trials train in one program; refuse it where it was asked for in vain."""
+    """Return whether trials train in one program; raise if that is requested but impossible."""
     swept = swept_fields(base.env)
     other = next(
         (name for name in config.space if present_name(type(base), name) not in swept), None

@@ -1,4 +1,4 @@
-"""The pictures of a sweep's report, as SVG: no files, no script, a word under the pointer."""
+"""The charts of a sweep's report, as SVG with tooltips, without files or scripts."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,13 +19,13 @@ def parallel_coordinates(
     measure: str,
     maximised: bool,
 ) -> str:
-    """Draw one axis a searched field and one for what is measured, one line a trial.
+    """Draw one axis per searched field, one for the objective, and one line per trial.
 
     Args:
-        results: of the trials; those that are not done are left out.
-        space: of the sweep.
+        results: results of the trials; those that are not done are left out.
+        space: search space of the sweep.
         measure: name of the objective.
-        maximised: whether more of it is better.
+        maximised: whether higher values of the objective are better.
     """
     done = sorted(
         (each for each in results if each.state == "done"),
@@ -74,12 +74,12 @@ def importance_bars(importance: Mapping[str, float]) -> str:
 def learning_curves(
     curves: Mapping[str, Sequence[tuple[int, float]]], best: Sequence[str], total: int
 ) -> str:
-    """Draw held-out success over steps, one line a training, the best trials' in colour.
+    """Draw held-out success over steps, one line per training, those of the best trials in colour.
 
     Args:
-        curves: (steps, success) by what the line is called.
-        best: names of those to be seen first.
-        total: steps of a whole training.
+        curves: points (steps, success) of each line, by its name.
+        best: names of the lines to emphasise.
+        total: number of steps of a whole training.
     """
     parts = [_axis_lines(total)]
     for name in sorted(curves, key=lambda each: each in best):
@@ -96,7 +96,7 @@ def learning_curves(
 
 
 def place_on(dimension: Dimension, value: Any) -> float | None:
-    """Return where a value lies on its axis, 0 at the foot and 1 at the top; None: not drawn."""
+    """Return a value's position on its axis, from 0 (bottom) to 1 (top); None: not drawn."""
     if value is None:
         return None
     if dimension.choices is not None:

@@ -13,15 +13,15 @@ def sweep(
     parallel: int | None = None,
     allow: tuple[str, ...] = (),
 ) -> None:
-    """Search a space of configurations; the same command goes on where it was interrupted.
+    """Search a space of configurations; the same command continues an interrupted search.
 
     Args:
-        sweep: of the search, YAML.
+        sweep: YAML file of the search.
         out: folder to work in.
         storage: grpc://HOST:PORT, a database URL or FILE.log; by default a journal in the folder.
-        workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
-        parallel: trainings at the same time; by default as the file says.
-        allow: code of your own that the configuration names, each MODULE:CLASS.
+        workers: processes on this machine, or ray: the cluster that RAY_ADDRESS names.
+        parallel: number of trainings at the same time; by default as in the file.
+        allow: your own code that the configuration names, as MODULE:CLASS.
     """
     from jaxleas.sweeps.border import open_sweep
     from jaxleas.sweeps.progress import SweepProgress
@@ -46,12 +46,12 @@ def sweep(
 
 
 def population(population: Path, *, out: Path, allow: tuple[str, ...] = ()) -> None:
-    """Train several policies in one compiled program; the same command goes on.
+    """Train several policies in one compiled program; the same command continues it.
 
     Args:
-        population: of the members, YAML.
+        population: YAML file of the members.
         out: folder to work in; each member's run folder is OUT/member_NN.
-        allow: code of your own that the configuration names, each MODULE:CLASS.
+        allow: your own code that the configuration names, as MODULE:CLASS.
     """
     import sys
 

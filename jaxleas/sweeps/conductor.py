@@ -1,7 +1,7 @@
-"""Conducts a sweep: hands out jobs, watches learning curves, tells results; all of it resumable.
+"""The conductor of a sweep: it assigns jobs, watches learning curves and reports results.
 
-The conductor alone writes to the storage. Workers leave files; what is on disk decides what is
-still to be done, so that a kill of any worker, or of the conductor, loses nothing that was saved
+The conductor alone writes to the storage. Workers write files; the files on disk determine what
+remains to be done, so that a kill of any worker, or of the conductor, loses nothing that was saved
 and counts nothing twice.
 """
 
@@ -27,8 +27,8 @@ from jaxleas.sweeps.study import Study
 from jaxleas.types.errors import InputError, JaxleasError
 
 MOST_DEATHS = 3
-"""Of workers over the same job without a further examination; then its trainings have failed."""
-PAUSE = 0.25  # between two looks at the workers [s]
+"""Deaths of workers on the same job without a new examination after which it counts as failed."""
+PAUSE = 0.25  # between two checks of the workers [s]
 
 
 class InterruptedSweepError(JaxleasError):
@@ -39,14 +39,14 @@ class InterruptedSweepError(JaxleasError):
 
 @dataclass
 class Conductor:
-    """One sitting of a sweep.
+    """One session of a sweep.
 
     Attributes:
-        sweep: to be conducted.
-        folder: it lives in, held.
-        study: its memory.
-        runner: does the jobs.
-        on_change: told all results so far whenever something changed.
+        sweep: sweep to conduct.
+        folder: folder of the sweep, held by this process.
+        study: study that stores the trials.
+        runner: runner that does the jobs.
+        on_change: function that is called with all results so far whenever something changed.
     """
 
     sweep: Sweep
@@ -60,7 +60,7 @@ class Conductor:
     _batches: dict[Path, list[int]] = field(default_factory=dict)
 
     def run(self) -> list[TrialResult]:
-        """Go on to the end; return the results of all trials.
+        """Continue to the end; return the results of all trials.
 
         Raises:
             InterruptedSweepError: a signal asked to stop.
@@ -69,8 +69,8 @@ class Conductor:
             try:
                 for trial in self.study.open_trials():
                     self._begin(trial)
-                self._know_batches()
-                self._tell_finished()
+                self._find_batches()
+                self._report_finished()
                 while not interruption.requested:
                     self._hand_out()
                     if not self._flying and not self._open:
@@ -79,14 +79,14 @@ class Conductor:
                     self._collect()
             finally:
                 self.runner.close()
-        self._tell_finished()
+        self._report_finished()
         done, all_ = len(self._keep()), self.sweep.config.trials
         raise InterruptedSweepError(
             f"interrupted with {done} of {all_} trials done; all is saved: the same command goes on"
         )
 
     def _begin(self, trial: Any) -> None:
-        """Draw a trial's values; one whose values do not fit each other has failed at once."""
+        """Draw a trial's values; a trial whose values do not fit each other fails at once."""
         values = self.study.draw(trial)
         try:
             configs = {
@@ -100,7 +100,7 @@ class Conductor:
         self._open[trial.number] = OpenTrial(trial, values, configs, self.folder, reported)
 
     def _hand_out(self) -> None:
-        """Give the runner jobs while it takes any and there are any."""
+        """Give the runner jobs while it has room and jobs remain."""
         jobs = self._batch_jobs() if self.sweep.vectorised else self._single_jobs()
         while self.runner.free > 0:
             job = next(jobs, None)
@@ -119,9 +119,9 @@ class Conductor:
                 yield from self._next_of(self._open[trial.number])
 
     def _next_of(self, each: OpenTrial) -> Iterator[Path]:
-        """Yield the jobs of a trial that can begin: its first seed's, then all the others'.
+        """Yield the jobs of a trial that can begin: that of its first seed, then all the others.
 
-        So the first seed's curve can end the trial before the others cost anything.
+        So the curve of the first seed can end the trial before the others cost anything.
         """
         outcomes = each.outcomes()
         first, *others = each.configs
@@ -134,7 +134,7 @@ class Conductor:
                 yield job
 
     def _batch_jobs(self) -> Iterator[Path]:
-        """Yield jobs of several trials in one program: begun batches first, then new ones."""
+        """Yield jobs of several trials in one program: started batches first, then new ones."""
         for job, numbers in list(self._batches.items()):
             if job not in self._flying and any(number in self._open for number in numbers):
                 yield job
@@ -154,8 +154,8 @@ class Conductor:
             self._batches[job] = [each.number for each in batch]
             yield job
 
-    def _know_batches(self) -> None:
-        """Find the batches that were begun before."""
+    def _find_batches(self) -> None:
+        """Find the batches that were started before."""
         for job in sorted(self.folder.batch(0).parent.glob("[0-9]*.json")):
             runs = read_job(job).runs
             self._batches[job] = sorted({int(run.parent.name) for run in runs})
@@ -170,7 +170,7 @@ class Conductor:
             write_job(job, runs, configs, objectives)
 
     def _collect(self) -> None:
-        """Take note of ended jobs and of learning curves."""
+        """Process ended jobs and learning curves."""
         changed = False
         for job, words in self.runner.ended():
             self._flying.discard(job)
@@ -178,14 +178,14 @@ class Conductor:
             runs = read_job(job).runs
             if all(outcome_file(run).is_file() for run in runs):
                 continue
-            if self._dies_in_vain(job, runs):
+            if self._count_death(job, runs):
                 self._give_up(runs, words)
         self._watch_curves()
         if changed:
-            self._tell_finished()
+            self._report_finished()
 
-    def _dies_in_vain(self, job: Path, runs: Sequence[Path]) -> bool:
-        """Count the death of a job's worker; return whether too many brought it no further."""
+    def _count_death(self, job: Path, runs: Sequence[Path]) -> bool:
+        """Count the death of a job's worker; return whether too many died without progress."""
         progress = sum(len(learning_curve(run)) for run in runs)
         before, deaths = self._deaths.get(job, (-1, 0))
         deaths = deaths + 1 if progress <= before else 1
@@ -199,7 +199,7 @@ class Conductor:
                 write_json(outcome_file(run), asdict(Outcome("failed", {}, reason)))
 
     def _watch_curves(self) -> None:
-        """Report new examinations of first seeds; stop those the pruner has seen enough of."""
+        """Report new examinations of first seeds; stop the trials that the pruner ends."""
         if self.sweep.config.pruner == "none":
             return
         for each in self._open.values():
@@ -213,8 +213,8 @@ class Conductor:
                     each.pruned = True
                     write_text(stop_file(run), "")
 
-    def _tell_finished(self) -> None:
-        """Tell the trials whose trainings all have their outcome."""
+    def _report_finished(self) -> None:
+        """Report the trials whose trainings have all ended to the study."""
         for number, each in list(self._open.items()):
             result = result_of(each)
             if result is not None:

@@ -1,4 +1,4 @@
-"""What a sweep is told: the search space, what is measured, how many trials."""
+"""The configuration of a sweep: search space, objectives, number of trials."""
 
 import json
 from typing import Annotated, Any, Literal, Self
@@ -13,25 +13,25 @@ Scalar = bool | int | float | str
 
 
 class Dimension(Strict):
-    """What one field of the run configuration may be: a range or choices."""
+    """The possible values of one field of the run configuration: a range or choices."""
 
     low: float | None = None
-    """Least value of a range; the field's type says whether it is of whole numbers."""
+    """Smallest value of a range; the field's type determines whether it holds whole numbers."""
     high: float | None = None
-    """Greatest value of a range."""
+    """Largest value of a range."""
     log: bool = False
-    """Draw the logarithm evenly."""
+    """Draw the logarithm uniformly."""
     step: Annotated[float, Field(gt=0.0)] | None = None
     """Draw only low, low + step, low + 2 step, and so on."""
     choices: tuple[JsonValue, ...] | None = None
     """Values of which one is drawn."""
     only_when: dict[str, JsonValue] = Field(default_factory=dict)
-    """Drawn only when the fields named here, which stand above in the space, have these values (or
-    one of a list of values); otherwise the field keeps the base configuration's value."""
+    """Condition under which it is drawn: the fields named here, listed earlier in the space, have
+    these values (or one of a list of values); otherwise it keeps the base configuration's value."""
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Least and greatest value of a range."""
+        """Smallest and largest value of a range."""
         if self.low is None or self.high is None:
             raise TypeError("choices have no ends")
         return self.low, self.high
@@ -70,25 +70,25 @@ class Dimension(Strict):
 
 
 class HeldOut(Strict):
-    """Success in the examination on held-out terrain: of the best policy, the one that is kept."""
+    """Success of the best policy, the one that is kept, in the examination on held-out terrain."""
 
     measure: Literal["held_out"] = "held_out"
 
     @property
     def name(self) -> str:
-        """In tables and files."""
+        """Name in tables and files."""
         return "held_out"
 
 
 class TimeToSuccess(Strict):
-    """How soon the examination is first passed with a given success."""
+    """Time after which an examination first has a given success."""
 
     measure: Literal["steps_to_success", "seconds_to_success"]
     success: Annotated[float, Field(gt=0.0, le=1.0)] = 0.9
 
     @property
     def name(self) -> str:
-        """In tables and files."""
+        """Name in tables and files."""
         return f"{self.measure.partition('_')[0]}_to_{100 * self.success:g}%"
 
 
@@ -98,14 +98,14 @@ class Exact(Strict):
     measure: Literal["exact"]
     planner: Annotated[str, AfterValidator(require_built_in)] = DEFAULT_JUDGE
     parameters: dict[str, JsonValue] = Field(default_factory=dict)
-    """Of the planner; what is not named has the planner's own default."""
+    """Options of the planner; unnamed ones have the planner's own defaults."""
     suites: Annotated[tuple[str, ...], Field(min_length=1)] = ("transitions",)
     starts: Count = 50
-    """A cell."""
+    """Number of starts per cell."""
 
     @property
     def name(self) -> str:
-        """In tables and files."""
+        """Name in tables and files."""
         return f"exact_{self.planner}"
 
 
@@ -122,25 +122,26 @@ class SweepConfig(Strict):
     space: dict[str, Dimension]
     """Fields that are searched, by dotted name."""
     objectives: tuple[Objective, ...] = (HeldOut(),)
-    """What is measured; of several the best compromises are found."""
+    """Measures of a trial; for several, the best compromises are found."""
     trials: Count = 20
     seeds: tuple[Seed, ...] = (0,)
-    """Training seeds of every trial; its value is the mean over them."""
+    """Training seeds of every trial, whose value is the mean over them."""
     sampler: Literal["tpe", "random"] = "tpe"
     pruner: Literal["none", "median", "hyperband"] = "none"
-    """Ends a trial early by the learning curve of its first seed; the others then are not run."""
+    """Method that ends a trial early, by the learning curve of its first seed; the other seeds are
+    then not run."""
     startup_trials: Count = 5
-    """The median pruner ends nothing before so many trials are there."""
+    """Number of trials before which the median pruner ends none."""
     parallel: Count = 1
-    """Trainings at the same time."""
+    """Number of trainings at the same time."""
     vectorised: bool | Literal["auto"] = "auto"
-    """Train many trials in one compiled program: possible where the space has only numbers that
-    change no shape; `auto`: where possible, no pruner is asked for and nothing but held-out
-    success is timed."""
+    """Train many trials in one compiled program: possible if the space has only numbers that
+    change no shape. `auto`: do so if it is possible, no pruner is set and no objective needs
+    trainings that run alone."""
     members: Count = 8
-    """Trainings in one such program."""
+    """Number of trainings in one such program."""
     seed: Seed = 0
-    """Of the sampler."""
+    """Seed of the sampler."""
 
     @model_validator(mode="after")
     def _nothing_empty(self) -> Self:

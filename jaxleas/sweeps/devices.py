@@ -4,5 +4,5 @@ from jaxleas.training.cores import cores, use_cores
 
 
 def use_all_cores() -> None:
-    """Let JAX take every core of a processor for a device; to be called before it touches any."""
+    """Let JAX treat every core as a device; call this before JAX touches any device."""
     use_cores(cores())

@@ -12,12 +12,12 @@ from jaxleas.sweeps.config import Dimension
 def draw(trial: BaseTrial, sweep: Sweep) -> dict[str, Any]:
     """Return the values of the searched fields, in the space's order.
 
-    A field whose condition does not hold is left out. Asked again for a trial that has some values
-    already, as after a kill between two draws, those stay.
+    A field whose condition does not hold is left out. Values that the trial already has, as after a
+    kill between two draws, are kept.
 
     Args:
-        trial: that draws and remembers.
-        sweep: whose space it is.
+        trial: Optuna trial that draws and stores the values.
+        sweep: sweep with the search space.
     """
     values: dict[str, Any] = {}
     for name, dimension in sweep.config.space.items():
@@ -29,7 +29,7 @@ def draw(trial: BaseTrial, sweep: Sweep) -> dict[str, Any]:
 
 def _draw_one(trial: BaseTrial, name: str, dimension: Dimension, whole: bool) -> Any:
     if dimension.choices is not None:
-        # Optuna's choices are scalars: a list is drawn by its text.
+        # Optuna's choices are scalars: a list is represented by its text.
         texts = {_as_scalar(choice): choice for choice in dimension.choices}
         return texts[trial.suggest_categorical(name, list(texts))]
     (low, high), step = dimension.ends, dimension.step

@@ -1,4 +1,4 @@
-"""Population-based training: the worse take over from the better, and try other numbers.
+"""Population-based training: worse members copy better ones, and try other values.
 
 Jaderberg et al., *Population Based Training of Neural Networks* (2017): exploit (truncation
 selection) and explore (perturb or resample), between examinations.
@@ -18,26 +18,27 @@ Values = dict[str, Any]
 
 
 class EvolutionConfig(Strict):
-    """How a population evolves."""
+    """Configuration of a population's evolution."""
 
     every: Annotated[int, Field(ge=1)] = 2
-    """Examinations between two rounds."""
+    """Number of examinations between two rounds."""
     share: Annotated[float, Field(gt=0.0, le=0.5)] = 0.25
-    """So much of the population, the worst by held-out success, takes over from as many best."""
+    """Share of the population, the worst by held-out success, that copies an equal share of the
+    best."""
     perturb: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
-    """Each number then goes up or down by this part of its range, on the range's scale."""
+    """Part of its range by which each value then moves up or down, on the range's scale."""
     resample: Annotated[float, Field(ge=0.0, le=1.0)] = 0.25
-    """Probability that a number is drawn anew instead."""
+    """Probability that a value is drawn anew instead."""
 
 
 @dataclass(frozen=True)
 class Succession:
-    """One round's outcome for one member.
+    """The result of one round for one member.
 
     Attributes:
-        member: that it is about.
-        parent: whose weights it goes on with: its own number if it keeps them.
-        values: of the varied fields from now on.
+        member: number of the member.
+        parent: number of the member whose weights it continues with; its own if it keeps them.
+        values: values of the varied fields from now on.
     """
 
     member: int
@@ -57,14 +58,15 @@ def evolve(
     values: Sequence[Values],
     stream: np.random.Generator,
 ) -> list[Succession]:
-    """Return who takes over from whom, and with which numbers.
+    """Return, for each member, whose weights it continues with, and with which values.
 
     Args:
-        config: how.
+        config: configuration of the evolution.
         space: ranges of the varied fields.
-        scores: of the members, higher is better; NaN is worst. Of equals the first is better.
-        values: of the varied fields, a member each.
-        stream: of random numbers.
+        scores: scores of the members; higher is better, NaN is worst, and the first of equals is
+            better.
+        values: values of the varied fields, one mapping per member.
+        stream: generator of random numbers.
     """
     order = sorted(range(len(scores)), key=lambda i: (-_finite(scores[i]), i))
     count = min(max(1, round(config.share * len(order))), len(order) // 2)

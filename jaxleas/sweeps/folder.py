@@ -2,9 +2,9 @@
 
 sweep.yaml, sweep.json      the sweep, resolved; its name and owner
 base.yaml                   the run configuration that trials start from, resolved
-journal.log                 Optuna's memory of all trials, unless --storage names another
+journal.log                 Optuna's journal of all trials, unless --storage names another
 trials/0007/seed_0/         run folder of trial 7 with training seed 0
-trials/0007/seed_0.json     its outcome; .job.json its job, .log what its worker said
+trials/0007/seed_0.json     its outcome; .job.json its job, .log the output of its worker
 results.csv, results.json   the table
 report.html                 pictures
 lock                        held while a process conducts the sweep
@@ -37,8 +37,9 @@ class SweepFolder:
     """A sweep's folder, held by one process.
 
     Attributes:
-        path: of the folder, absolute.
-        owner: tells this folder's trials from those of other machines in one storage.
+        path: absolute path of the folder.
+        owner: identity that distinguishes this folder's trials from those of other machines in one
+            storage.
     """
 
     path: Path
@@ -47,7 +48,7 @@ class SweepFolder:
 
     @property
     def journal(self) -> Path:
-        """Optuna's memory."""
+        """The file of Optuna's journal."""
         return self.path / "journal.log"
 
     def trial(self, number: int) -> Path:
@@ -63,15 +64,16 @@ class SweepFolder:
         return self.path / "batches" / f"{number:04d}.json"
 
     def close(self) -> None:
-        """Let another process conduct the sweep."""
+        """Release the folder, so that another process can conduct the sweep."""
         self._lock.close()
 
 
 def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
-    """Make a sweep's folder, or go on in it, and hold it.
+    """Make a sweep's folder, or open an existing one, and hold it.
 
     Raises:
-        InputError: it is something else's, another sweep's, or held by another process.
+        InputError: the folder belongs to something else or another sweep, or is held by another
+            process.
     """
     path = Path(path).absolute()
     known = path / "sweep.json"
@@ -92,7 +94,7 @@ def open_folder(path: Path, sweep: Sweep) -> SweepFolder:
 
 
 def _require_same(path: Path, sweep: Sweep) -> None:
-    """Refuse another sweep; more trials and other workers may be asked for."""
+    """Refuse another sweep; more trials and other workers are allowed."""
     then = load_config(SweepConfig, path / "sweep.yaml")
     free = {"trials": 1, "parallel": 1}
     if then.model_copy(update=free) != sweep.config.model_copy(update=free):
@@ -108,10 +110,10 @@ def _require_same(path: Path, sweep: Sweep) -> None:
 
 
 def require_vacant(path: Path, beginnings: set[str], kind: str) -> None:
-    """Refuse a folder that holds more than the beginnings of what is to be made there.
+    """Refuse a folder that holds more than the beginnings of what will be made there.
 
     Raises:
-        InputError: it does, or it is a file.
+        InputError: the folder holds something else, or is a file.
     """
     if path.exists() and not path.is_dir():
         raise InputError(f"{path} is a file; --out names a folder")
@@ -124,7 +126,7 @@ def hold(path: Path) -> FolderLock:
     """Make a folder and hold it until the lock is closed.
 
     Raises:
-        InputError: it cannot be made, or another process holds it.
+        InputError: the folder cannot be made, or another process holds it.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The history of a population: who took over from whom, and when."""
+"""The history of a population: which member copied which, and when."""
 
 import json
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ MAX_BYTES = 2**26
 
 @dataclass(frozen=True)
 class Round:
-    """One round of evolution, an entry a member.
+    """One round of evolution, with one entry per member.
 
     Attributes:
-        step: at which it was.
+        step: training step of the round.
         scores: held-out success; None: the member made non-finite numbers.
-        parents: whose weights the member went on with.
-        values: of the varied fields from then on.
+        parents: number of the member whose weights each member continued with.
+        values: values of the varied fields from then on.
     """
 
     step: int
@@ -31,20 +31,20 @@ class Round:
 
 
 class History:
-    """`history.jsonl`: one line a round of evolution."""
+    """The file `history.jsonl`, with one line per round of evolution."""
 
     def __init__(self, path: Path, after_step: int) -> None:
-        """Go on with the rounds up to a step; later ones belong to an abandoned future.
+        """Open the file and keep the rounds up to a step; later ones are obsolete.
 
         Raises:
-            InputError: a line of the file is no round.
+            InputError: a line of the file is not a round.
         """
         self.path = path
         self._rounds = [each for each in read_history(path) if each.step <= after_step]
         self._write()
 
     def append(self, step: int, scores: list[float], round_: list[Succession]) -> None:
-        """Add a round; a score of nothing is a member that made non-finite numbers."""
+        """Add a round; a NaN score marks a member that made non-finite numbers."""
         finite = [each if np.isfinite(each) else None for each in scores]
         parents, values = [each.parent for each in round_], [each.values for each in round_]
         self._rounds.append(Round(step, finite, parents, values))
@@ -57,10 +57,10 @@ class History:
 
 
 def read_history(path: Path) -> list[Round]:
-    """Return the rounds of a population's evolution, oldest first; none where there is no file.
+    """Return the rounds of a population's evolution, oldest first; without a file, no rounds.
 
     Raises:
-        InputError: a line of it is no round.
+        InputError: a line of the file is not a round.
     """
     if not path.is_file():
         return []
@@ -73,7 +73,7 @@ def _round(line: bytes, where: str) -> Round:
 
 
 def lineage(history: Sequence[Round], member: int) -> list[int]:
-    """Return whose weights a member had before each round, oldest first, and its own number."""
+    """Return the members whose weights a member had before each round, then the member itself."""
     line = [member]
     for each in reversed(history):
         line.append(each.parents[line[-1]])

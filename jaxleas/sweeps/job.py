@@ -1,7 +1,7 @@
-"""What a worker of a sweep does: train one or several trainings, measure them, leave outcomes.
+"""The job of a sweep's worker: run one or several trainings, measure them, write outcomes.
 
-A job is a file, and so is each outcome: whoever finds a job without its outcomes does it again,
-from the checkpoints that are there. So a worker, or all of them, may be killed at any moment.
+A job is a file, and so is each outcome: a job without its outcomes is done again, from the existing
+checkpoints. So a worker, or all of them, may be killed at any moment.
 """
 
 import itertools
@@ -20,18 +20,18 @@ from jaxleas.types.errors import JaxleasError
 
 LIFELINE = "--lifeline"
 ALLOW = "--allow"
-STOP = "stop"  # a file beside the run folder: the trial is pruned
+STOP = "stop"  # suffix of a file next to the run folder: the trial is pruned
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one training.
+    """The end of one training.
 
     Attributes:
-        state: done, pruned or failed.
-        values: of the objectives, by name; none unless done.
-        reason: why it failed.
-        seconds: that it trained, resumed parts included.
+        state: state of the training: done, pruned or failed.
+        values: values of the objectives, by name; empty unless done.
+        reason: reason for a failure.
+        seconds: training time, including resumed parts [s].
     """
 
     state: str
@@ -45,8 +45,8 @@ class Training:
     """One training of a job.
 
     Attributes:
-        run: its run folder, absolute.
-        config: its configuration, as JSON.
+        run: absolute path of its run folder.
+        config: run configuration as JSON.
     """
 
     run: str
@@ -55,12 +55,12 @@ class Training:
 
 @dataclass(frozen=True)
 class Job:
-    """What a job's file holds.
+    """The content of a job's file.
 
     Attributes:
-        trainings: to be done; several as one population.
-        objectives: to be measured, as plain JSON.
-        version: of the file.
+        trainings: trainings to run; several of them run as one population.
+        objectives: objectives to measure, as plain JSON.
+        version: version of the file's format.
     """
 
     trainings: list[Training]
@@ -74,11 +74,11 @@ class Job:
 
 
 class _PrunedError(JaxleasError):
-    """The sweep has seen enough of this learning curve."""
+    """The pruner has ended this training."""
 
 
 def outcome_file(run: Path) -> Path:
-    """Return where a training's outcome is left: beside its run folder."""
+    """Return the file of a training's outcome, next to its run folder."""
     return run.with_name(f"{run.name}.json")
 
 
@@ -88,10 +88,10 @@ def stop_file(run: Path) -> Path:
 
 
 def read_outcome(run: Path) -> Outcome | None:
-    """Return a training's outcome; None while it has none.
+    """Return a training's outcome; None while there is no file.
 
     Raises:
-        InputError: its file is none.
+        InputError: the file is not an outcome.
     """
     path = outcome_file(run)
     if not path.is_file():
@@ -103,10 +103,10 @@ def write_job(path: Path, runs: Sequence[Path], configs: Sequence[str], objectiv
     """Write a job.
 
     Args:
-        path: of the file.
-        runs: run folders of the trainings, absolute; several train as one population.
-        configs: of the trainings, as JSON.
-        objectives: to be measured, as plain JSON.
+        path: path of the file.
+        runs: absolute paths of the run folders; several trainings run as one population.
+        configs: run configurations of the trainings, as JSON.
+        objectives: objectives to measure, as plain JSON.
     """
     pairs = zip(map(str, runs), configs, strict=True)
     write_json(path, asdict(Job([Training(*each) for each in pairs], objectives)))
@@ -116,18 +116,17 @@ def read_job(path: str | Path) -> Job:
     """Read a job.
 
     Raises:
-        InputError: the file is none.
+        InputError: the file is not a job.
     """
     return read_typed(Job, path, "job of a sweep")
 
 
 def do_job(path: str | Path, allow: Sequence[str] = ()) -> None:
-    """Do a job: every training of it has an outcome afterwards.
+    """Do a job: each of its trainings has an outcome afterwards.
 
     Args:
         path: file of the job.
-        allow: code of the user's own that may be run, each MODULE:CLASS; a file's word is not
-            enough.
+        allow: user's own code that may be run, as MODULE:CLASS; naming it in a file is not enough.
 
     Raises:
         InterruptedRunError: a signal asked to stop; everything done is saved.
@@ -199,13 +198,13 @@ def _outcome(run: Path, config: Any, objectives: Any, state: str, reason: str) -
 
 
 def _die_with_parent() -> None:
-    """End this process when whoever started it is gone: their end of standard input closes."""
+    """End this process when its parent is gone, which closes the other end of standard input."""
 
     def wait_for_the_end() -> None:
-        # Not through `sys.stdin`: its lock, held by this thread, would abort an orderly end.
+        # Not through `sys.stdin`: this thread would hold its lock, which prevents an orderly end.
         while os.read(0, 4096):
             pass
-        os._exit(1)  # at once, as a kill would: everything that counts is on disk
+        os._exit(1)  # at once, as a kill would: everything needed is on disk
 
     threading.Thread(target=wait_for_the_end, daemon=True).start()
 
@@ -222,7 +221,7 @@ def work(path: str | Path, allow: Sequence[str] = ()) -> None:
 
 
 def patiently(function: Callable[[Any], None], path: str | Path, seconds: float = 90.0) -> None:
-    """Do a job, waiting where its run folder is still held by a worker that is about to die."""
+    """Do a job; wait while its run folder is still held by a worker that is about to end."""
     until = time.monotonic() + seconds
     while True:
         try:

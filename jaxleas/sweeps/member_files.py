@@ -1,4 +1,4 @@
-"""A member's run folder, written as that of a training alone: nobody can tell them apart."""
+"""A member's run folder, written exactly like that of a single training."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -20,9 +20,9 @@ class MemberFiles:
     """The open run folder of one member.
 
     Attributes:
-        run: its folder, held for writing.
+        run: run folder, held for writing.
         best: highest held-out success so far; -1 before the first examination.
-        failure: why the member is given up; empty while it is not.
+        failure: reason why the member has failed; empty while it has not.
     """
 
     def __init__(
@@ -34,46 +34,46 @@ class MemberFiles:
         best: float,
         allow: Collection[str] = (),
     ) -> None:
-        """Make the run folder, or go on in it.
+        """Make the run folder, or continue in it.
 
         Args:
-            path: of the folder.
-            config: of the member.
-            command: that started the population.
-            after_step: when resuming, the step resumed from: later rows are dropped.
+            path: path of the folder.
+            config: run configuration of the member.
+            command: command line that started the population.
+            after_step: when resuming, the step to resume from: later rows are dropped.
             best: highest held-out success so far.
-            allow: code of the user's own that may be run, each MODULE:CLASS.
+            allow: user's own code that may be run, as MODULE:CLASS.
 
         Raises:
-            InputError: the folder is another run's, or in use.
+            InputError: the folder belongs to another run, or is in use.
         """
         self.run = hold_run_folder(path, config, command, allow)
         self.best, self.failure = best, ""
         self._log = MetricsLog(path, truncate_after_step=after_step)
 
-    def record(self, rows: list[tuple[int, dict[str, Any]]], verdict: dict[str, float]) -> None:
-        """Append metrics, the last of them with the verdict of the examination.
+    def record(self, rows: list[tuple[int, dict[str, Any]]], fractions: dict[str, float]) -> None:
+        """Append metrics, with the result of the examination in the last row.
 
         Args:
-            rows: (step, metrics) of each update since the last time.
-            verdict: fractions of held-out starts; empty: no examination was held.
+            rows: step and metrics of each update since the last call.
+            fractions: fractions of held-out starts; empty: there was no examination.
         """
         for index, (step, metrics) in enumerate(rows):
             numbers = {name: float(each) for name, each in metrics.items() if "finite/" not in name}
-            self._log.append(step, numbers | (verdict if index == len(rows) - 1 else {}))
+            self._log.append(step, numbers | (fractions if index == len(rows) - 1 else {}))
 
     def keep_policy(self, population: Population, states: TrainState, member: int, score: float):
-        """Write the policy if it is the best so far; of equals the later, as in a run alone."""
+        """Write the policy if it is the best so far; the later of equals, as in a single run."""
         if score >= self.best:
             self.best = score
             write_policy(self.run.path / POLICY_FILE, population.policy(states, member))
 
     def conclude(self, states: TrainState, member: int, step: int) -> None:
-        """Leave the final state as an ordinary checkpoint."""
+        """Write the final state as an ordinary checkpoint."""
         state = member_of(states, member)
         Checkpoints(self.run.checkpoints).save(step, state, {"best": self.best}, self.best)
 
     def close(self) -> None:
-        """Close the files and let others write."""
+        """Close the files and let other processes write."""
         self._log.close()
         self.run.close()

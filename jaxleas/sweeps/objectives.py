@@ -1,4 +1,4 @@
-"""What trials are measured by, read from a training's run folder."""
+"""The objectives of trials, measured from a training's run folder."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,24 +15,24 @@ POLICY_FILE = "policy.npz"
 
 
 def is_maximised(objective: Objective) -> bool:
-    """Return whether more is better: of success, not of time."""
+    """Return whether higher is better, as for success but not for time."""
     return not isinstance(objective, TimeToSuccess)
 
 
 def learning_curve(run: Path) -> list[tuple[int, float]]:
-    """Return (steps, held-out success) at every examination so far."""
+    """Return steps and held-out success at every examination so far."""
     metrics = run / "metrics.jsonl"
     rows = read_metrics(metrics) if metrics.is_file() else []
     return [(row["step"], row[SUCCESS]) for row in rows if row.get(SUCCESS) is not None]
 
 
 def measure(run: Path, objectives: Sequence[Objective], total_steps: int) -> dict[str, float]:
-    """Return each objective's value of a finished training, by name.
+    """Return each objective's value for a finished training, by name.
 
     Args:
-        run: its run folder.
-        objectives: to be measured.
-        total_steps: of the training.
+        run: run folder of the training.
+        objectives: objectives to measure.
+        total_steps: number of steps of the training.
 
     Raises:
         InputError: the run folder lacks something.
@@ -49,11 +49,11 @@ def measure(run: Path, objectives: Sequence[Objective], total_steps: int) -> dic
 
 
 def time_to_success(run: Path, objective: TimeToSuccess, total_steps: int) -> float:
-    """Return the environment steps, or seconds, after which the success was first there.
+    """Return the environment steps, or seconds, after which the success was first reached.
 
-    Where it never was, the whole training's time and, on top, the part of it by which the best
-    success fell short: so that the sampler still learns which trial came nearer. A value above the
-    whole training's time therefore means *never*.
+    If it never was, return the time of the whole training plus the part of it by which the best
+    success fell short, so that the sampler still learns which trial came closer. A value above the
+    time of the whole training therefore means *never*.
     """
     rows = [row for row in read_metrics(run / "metrics.jsonl") if row.get(SUCCESS) is not None]
     key = "step" if objective.measure == "steps_to_success" else "seconds"
@@ -66,7 +66,7 @@ def time_to_success(run: Path, objective: TimeToSuccess, total_steps: int) -> fl
 
 
 def never(objective: Objective, value: float, total: float) -> bool:
-    """Return whether a time says that the success was never there."""
+    """Return whether a time means that the success was never reached."""
     return isinstance(objective, TimeToSuccess) and value > total
 
 

@@ -1,4 +1,4 @@
-"""A trial that was drawn and is not told yet: what of it is on disk, and what follows from that."""
+"""A trial that was drawn and not reported yet: its files on disk, and its result from them."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,15 +12,15 @@ from jaxleas.training.config import RunConfig
 
 @dataclass
 class OpenTrial:
-    """A trial that is not told yet.
+    """A trial whose result is not reported yet.
 
     Attributes:
-        trial: Optuna's.
-        values: of the searched fields.
-        configs: of its trainings, by seed.
-        folder: of the sweep.
-        reported: examinations of the first seed that the storage knows.
-        pruned: it was told to stop.
+        trial: Optuna trial.
+        values: values of the searched fields.
+        configs: run configurations of its trainings, by seed.
+        folder: folder of the sweep.
+        reported: number of examinations of the first seed that were reported to the storage.
+        pruned: whether the trial was asked to stop.
     """
 
     trial: Any
@@ -32,7 +32,7 @@ class OpenTrial:
 
     @property
     def number(self) -> int:
-        """Counted from 0."""
+        """Number of the trial, counted from 0."""
         return self.trial.number
 
     def run(self, seed: int) -> Path:
@@ -40,7 +40,7 @@ class OpenTrial:
         return self.folder.run(self.number, seed)
 
     def outcomes(self) -> dict[int, Outcome]:
-        """Return the outcomes that are there, by seed."""
+        """Return the existing outcomes, by seed."""
         found = {seed: read_outcome(self.run(seed)) for seed in self.configs}
         return {seed: outcome for seed, outcome in found.items() if outcome is not None}
 

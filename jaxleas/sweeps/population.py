@@ -1,8 +1,9 @@
 """A population: trainings that differ in seeds and numbers only, in one compiled program.
 
-Devices divide the members, and the terrain is there once. On a processor the members of a device
-take turns inside the program (`lax.map`): vectorised they took twice as long, because batches of
-small matrix products run on one thread. Other devices do them all at once (`vmap`).
+The members are divided among the devices, and the terrain exists once. On a processor the members
+of a device run one after another inside the program (`lax.map`): vectorised they took twice as
+long, because batches of small matrix products run on one thread. Other devices run them all at once
+(`vmap`).
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -38,13 +39,15 @@ class Population:
 
     Attributes:
         configs: configurations of the members; they differ in the seed and in `swept_fields` alone.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
-        task: what they learn.
-        world: what they train in, shared by all.
-        held_out: what they are examined in, likewise.
-        train_step: (world, states, params) -> (states, metrics [members]); donates the states.
-        examine: (held-out world, normaliser, policy) -> fractions [members].
-        fresh_states: makes the states before the first update; every array [members, ...].
+        allow: user's own code that may be run, as MODULE:CLASS.
+        task: task that the members learn.
+        world: world that they train in, shared by all.
+        held_out: world that they are examined in, likewise.
+        train_step: function (world, states, params) -> (states, metrics [members]); it donates the
+            states.
+        examine: function (held-out world, normaliser, policy) -> fractions [members].
+        fresh_states: function that makes the states before the first update; every array is
+            [members, ...].
     """
 
     configs: Sequence[RunConfig]
@@ -106,10 +109,10 @@ def member_of(tree: Any, member: int) -> Any:
 
 
 def require_one_program(configs: Sequence[RunConfig]) -> RunConfig:
-    """Return what the members have in common: the first one's configuration.
+    """Return the configuration that stands for all members: that of the first.
 
     Raises:
-        InputError: they differ in a field that changes the program, or there are none.
+        InputError: members differ in a field that changes the program, or there are no members.
     """
     if not configs:
         raise InputError("a population needs at least one member")
@@ -135,14 +138,14 @@ def require_one_program(configs: Sequence[RunConfig]) -> RunConfig:
 
 
 def each_member(function: Callable[[Any], Any], members: Any) -> Any:
-    """Return what `function` makes of every member of arrays [members, ...]."""
+    """Return the results of `function` for every member of arrays [members, ...]."""
     if jax.default_backend() == "cpu":
         return jax.lax.map(function, members)
     return jax.vmap(function)(members)
 
 
 def _mesh(members: int) -> Mesh:
-    """Return as many of this process's devices as divide the members evenly."""
+    """Return a mesh of the most devices of this process that divide the members evenly."""
     devices = jax.local_devices()
     count = next(n for n in range(min(members, len(devices)), 0, -1) if members % n == 0)
     return Mesh(np.array(devices[:count]), (AXIS,))

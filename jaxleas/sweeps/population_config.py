@@ -1,4 +1,4 @@
-"""What a population is told, and its members' configurations."""
+"""The configuration of a population, and those of its members."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
@@ -30,13 +30,13 @@ class PopulationConfig(Strict):
     set: dict[str, Any] = Field(default_factory=dict)
     """Fields that are changed for all members, by dotted name."""
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = tuple(range(8))
-    """Training seeds: one member each."""
+    """Training seeds, one member each."""
     vary: dict[str, Dimension] = Field(default_factory=dict)
     """Fields that each member draws at random; only numbers that change no shape."""
     evolution: EvolutionConfig | None = None
-    """Population-based training over the varied fields; none: members never meet."""
+    """Population-based training over the varied fields; none: members are independent."""
     seed: Seed = 0
-    """Of what is drawn for the members, and of the evolution."""
+    """Seed of the values drawn for the members, and of the evolution."""
 
     @model_validator(mode="after")
     def _members_differ(self) -> Self:
@@ -52,15 +52,15 @@ class PopulationConfig(Strict):
 
 @dataclass(frozen=True)
 class Members:
-    """Who is in a population, and how it evolves.
+    """The members of a population, and how it evolves.
 
     Attributes:
-        configs: of the members.
-        values: of the varied fields, a member each.
-        space: of the varied fields.
-        evolution: None: members never meet.
+        configs: run configurations of the members.
+        values: values of the varied fields, one mapping per member.
+        space: ranges of the varied fields.
+        evolution: configuration of the evolution; None: members are independent.
         seed: seed of the evolution.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS.
     """
 
     configs: tuple[RunConfig, ...]
@@ -80,11 +80,11 @@ def open_population(path: str | Path, allow: Collection[str] = ()) -> Members:
     """Read a population's file and the configuration it names.
 
     Args:
-        path: the file.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        path: path of the file.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the file, the key, and what would do.
+        InputError: the value is invalid; the message names the file, the key, and what would do.
     """
     path = Path(path)
     config = load_config(PopulationConfig, path)

@@ -1,9 +1,9 @@
 """A population's folder.
 
 population.json     the members' configurations and the evolution, resolved
-member_00/          run folder of member 0, an ordinary one
+member_00/          run folder of member 0, as of a single training
 checkpoints/        the state of all members
-history.jsonl       one line a round of evolution: scores, parents, values
+history.jsonl       one line per round of evolution: scores, parents, values
 lock                held while a process trains
 """
 
@@ -28,7 +28,7 @@ RECORD = "population.json"
 
 @dataclass(frozen=True)
 class _Record:
-    """Who is in a population, resolved; fields that are newer than its file have their defaults."""
+    """The resolved members of a population; fields newer than its file have their defaults."""
 
     seed: int
     evolution: EvolutionConfig | None
@@ -39,10 +39,11 @@ class _Record:
 
 @contextmanager
 def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
-    """Make a population's folder, or go on in it; yield the members' run folders.
+    """Make a population's folder, or open an existing one; yield the members' run folders.
 
     Raises:
-        InputError: it is something else's, another population's, or held by another process.
+        InputError: the folder belongs to something else or another population, or is held by
+            another process.
     """
     file = path / RECORD
     if not file.is_file():
@@ -66,15 +67,15 @@ def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
 
 
 def _configs(file: Path, record: _Record, members: Members) -> list[AnyRun]:
-    """Return a record's configurations; fields that are newer than its file have their defaults."""
+    """Return a record's configurations; fields newer than its file have their defaults."""
     what = f"{file} is no record of a population"
     return [parse_run_config(each, what, members.allow) for each in record.members]
 
 
 def _read(file: Path) -> _Record:
-    """Return what a record says.
+    """Return the record in a file.
 
     Raises:
-        InputError: it is of another version, or damaged.
+        InputError: the file is of another version, or damaged.
     """
     return read_typed(_Record, file, "record of a population", VERSION)

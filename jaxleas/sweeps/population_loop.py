@@ -23,13 +23,13 @@ from jaxleas.training.train_state import TrainState
 
 @dataclass(frozen=True)
 class MemberResult:
-    """What became of one member.
+    """The result of one member.
 
     Attributes:
-        run: its run folder.
+        run: run folder of the member.
         best: highest held-out success.
-        failure: why it was given up; empty if it was not.
-        values: of the varied fields at the end.
+        failure: reason why it failed; empty if it did not.
+        values: values of the varied fields at the end.
     """
 
     run: Path
@@ -43,17 +43,17 @@ def train_population(
 ) -> list[MemberResult]:
     """Train a population to the end, or until interrupted.
 
-    A home that holds checkpoints is gone on with from the newest, exactly as if the population
-    had never been interrupted.
+    A home that holds checkpoints is resumed from the newest, exactly as if the population had never
+    been interrupted.
 
     Args:
-        members: who trains.
-        runs: a run folder for each.
+        members: members to train.
+        runs: run folder of each member.
         home: folder of the population's checkpoints and history.
-        command: that started it, for the run folders' provenance.
+        command: command line that started it, for the run folders' provenance.
 
     Raises:
-        InputError: a folder is another run's, or in use.
+        InputError: a folder belongs to another run, or is in use.
         InterruptedRunError: a signal asked to stop; everything done is saved.
     """
     loop = _Loop(members, runs, home, list(command))
@@ -136,14 +136,14 @@ class _Loop:
         ]
 
     def _record(self, rows: list[tuple[int, Any]], due: bool) -> list[float]:
-        """Write down what the members did; return their held-out success, NaN for the fallen."""
-        verdict: dict[str, np.ndarray] = {}
+        """Write the members' metrics; return their held-out success, NaN for those that failed."""
+        examined: dict[str, np.ndarray] = {}
         if due:
             states = self.states
             found = self.population.examine(
                 self.population.held_out, states.normaliser, states.averaged
             )
-            verdict = jax.device_get(found)
+            examined = jax.device_get(found)
         scores = []
         for number, files in enumerate(self.files):
             own = [
@@ -154,7 +154,7 @@ class _Loop:
             scores.append(float("nan"))
             if files.failure:
                 continue
-            fractions = {name: float(each[number]) for name, each in verdict.items()}
+            fractions = {name: float(each[number]) for name, each in examined.items()}
             files.record(own, fractions)
             if due:
                 scores[-1] = fractions[SUCCESS]
@@ -166,24 +166,24 @@ class _Loop:
         examination = self.done // self.config.held_out.every
         if evolution is None or examination % evolution.every:
             return
-        # Its own stream for every round: the same after a resume.
+        # A separate stream for every round: it is the same after a resume.
         stream = np.random.default_rng((self.members.seed, len(self.files), examination))
         round_ = evolve(evolution, self.members.space, scores, self.values, stream)
         parents = np.array([each.parent for each in round_])
         self.states = self.population.place(self._taken_over(parents))
         self.values = [each.values for each in round_]
         self._set_params()
-        # A fallen member begins again as another.
+        # A failed member continues as a copy of another.
         failures = [self.files[each.parent].failure for each in round_]
         for files, failure in zip(self.files, failures, strict=True):
             files.failure = failure
         self.history.append(self.done * self.config.ppo.batch, scores, round_)
 
     def _taken_over(self, parents: np.ndarray) -> TrainState:
-        """Return the states after every member took what its parent has learned."""
+        """Return the states after every member has copied what its parent learned."""
         own = np.arange(len(parents))
         fallen = [bool(files.failure) for files in self.files]
-        # Robots walk on where they are, unless they fell with their policy.
+        # Robots continue where they are, unless their own policy failed.
         walkers = np.where(fallen, parents, own)
         source = dict.fromkeys(("params", "averaged", "optimiser", "normaliser"), parents)
         source |= dict.fromkeys(("episode", "observation"), walkers)

@@ -1,4 +1,4 @@
-"""A population's outcome for a terminal: one row a member, the best first."""
+"""A population's results for a terminal: one row per member, the best first."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from jaxleas.sweeps.results import shown_param
 
 
 def population_table(members: Members, results: Sequence[MemberResult]) -> str:
-    """Return the table of members: seed, held-out success, and the numbers at the end."""
+    """Return the table of members: seed, held-out success, and the values at the end."""
     names = list(members.space)
     lines = [["member", "seed", "held out", *names, "run"]]
     order = sorted(range(len(results)), key=lambda i: (bool(results[i].failure), -results[i].best))

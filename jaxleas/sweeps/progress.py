@@ -1,4 +1,4 @@
-"""How far a sweep is: one redrawn line in a terminal, plain lines elsewhere."""
+"""Progress of a sweep: one redrawn line in a terminal, plain lines elsewhere."""
 
 import os
 import sys
@@ -10,11 +10,11 @@ from jaxleas.sweeps.results import TrialResult, best_of, shown_value
 
 
 class SweepProgress:
-    """Shows trials done, those running, the best so far, and the time left.
+    """Display of trials done, trials running, the best so far, and the time left.
 
     Args:
-        sweep: that is conducted.
-        stream: where to write; standard error by default.
+        sweep: sweep that is conducted.
+        stream: stream to write to; standard error by default.
     """
 
     def __init__(self, sweep: Sweep, stream: TextIO | None = None) -> None:
@@ -27,9 +27,9 @@ class SweepProgress:
         self._line = ""
 
     def __call__(self, results: list[TrialResult], running: int) -> None:
-        """Say how far it is."""
+        """Show the progress."""
         if self._before is None:
-            self._before = len(results)  # of an earlier sitting: they say nothing of the speed
+            self._before = len(results)  # of an earlier session: they do not count for the speed
         line = self._describe(results, running)
         if line != self._line:
             self._line = line

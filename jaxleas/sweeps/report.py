@@ -1,4 +1,4 @@
-"""A sweep's report: one HTML file that needs nothing else."""
+"""A sweep's report: one self-contained HTML file."""
 
 from collections.abc import Mapping, Sequence
 
@@ -21,10 +21,10 @@ def report_html(
     """Return the report: table, parallel coordinates, importance, learning curves.
 
     Args:
-        sweep: that was conducted.
-        results: of its trials.
-        importance: of the searched fields for the first objective, as shares.
-        folder: of the sweep, with the run folders of the trials that ran here.
+        sweep: sweep that was conducted.
+        results: results of its trials.
+        importance: importance of the searched fields for the first objective, as shares.
+        folder: folder of the sweep, with the run folders of the trials that ran here.
     """
     config = sweep.config
     front = best_of(results, config.objectives)

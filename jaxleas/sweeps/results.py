@@ -1,4 +1,4 @@
-"""The table of a sweep: one row a trial, in the terminal, as CSV and as JSON."""
+"""The table of a sweep: one row per trial, in the terminal, as CSV and as JSON."""
 
 import csv
 import io
@@ -17,16 +17,16 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What became of one trial.
+    """The result of one trial.
 
     Attributes:
-        number: counted from 0.
-        state: done, pruned or failed.
+        number: number of the trial, counted from 0.
+        state: state of the trial: done, pruned or failed.
         params: values of the searched fields.
-        values: of the objectives, by name: means over the seeds; none unless done.
-        seeds: the same of each training, by seed.
-        reason: why it failed.
-        seconds: that its trainings took together.
+        values: values of the objectives, by name: means over the seeds; empty unless done.
+        seeds: values of the objectives for each training, by seed.
+        reason: reason for a failure.
+        seconds: total time of its trainings [s].
     """
 
     number: int
@@ -39,7 +39,7 @@ class TrialResult:
 
 
 def best_of(results: Sequence[TrialResult], objectives: Sequence[Objective]) -> list[TrialResult]:
-    """Return the trials that no other one beats in every objective, best first by the first."""
+    """Return the trials that no other beats in every objective, sorted by the first objective."""
     done = [each for each in results if each.state == "done"]
 
     def score(result: TrialResult) -> tuple[float, ...]:
@@ -72,7 +72,7 @@ def write_results(folder: Path, results: Sequence[TrialResult], sweep: Sweep) ->
     """Write results.json and results.csv.
 
     Raises:
-        InputError: they cannot be written.
+        InputError: a file cannot be written.
     """
     best = [each.number for each in best_of(results, sweep.config.objectives)]
     write_json(
@@ -121,7 +121,7 @@ def plain_table(results: Sequence[TrialResult], sweep: Sweep, most: int = 40) ->
 
 
 def shown_value(objective: Objective, value: float | None, total: float) -> str:
-    """Return an objective's value for people."""
+    """Return an objective's value as text for display."""
     if value is None:
         return "-"
     if is_maximised(objective):
@@ -132,7 +132,7 @@ def shown_value(objective: Objective, value: float | None, total: float) -> str:
 
 
 def shown_param(value: Any) -> str:
-    """Return a searched field's value for people; nothing where it was not drawn."""
+    """Return a searched field's value as text for display; empty if it was not drawn."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

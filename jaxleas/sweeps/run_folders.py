@@ -1,4 +1,4 @@
-"""Run folders that may be there already, whole or cut short by a kill."""
+"""Run folders that may already exist, complete or cut short by a kill."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -9,25 +9,25 @@ from jaxleas.training.config import RunConfig
 from jaxleas.training.run_config import load_run_config
 from jaxleas.types.errors import InputError
 
-# What a run folder holds before the record that says it is whole.
+# Files of a run folder before the record that marks it as complete.
 _BEGINNINGS = {"lock", "config.yaml", "provenance.diff"}
 
 
 def hold_run_folder(
     path: Path, config: RunConfig, command: Sequence[str], allow: Collection[str] = ()
 ) -> RunFolder:
-    """Make a training's run folder, or go on in it, and hold it for writing.
+    """Make a training's run folder, or open an existing one, and hold it for writing.
 
-    One whose making was cut short is made again.
+    A folder whose making was cut short is made again.
 
     Args:
-        path: of the folder.
-        config: of the training.
+        path: path of the folder.
+        config: configuration of the training.
         command: command line that started it.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: the folder is another's, or in use.
+        InputError: the folder belongs to another run, or is in use.
     """
     if not (path / "provenance.json").is_file():
         if path.is_dir():

@@ -1,4 +1,4 @@
-"""Who does a sweep's jobs: processes of this machine, or a Ray cluster."""
+"""Runners of a sweep's jobs: processes on this machine, or a Ray cluster."""
 
 import os
 import signal
@@ -17,11 +17,11 @@ from jaxleas.types.errors import InputError
 from jaxleas.workers.ray_workers import RayWorkers
 
 _COMMAND = (sys.executable, "-m", "jaxleas.sweeps.job")
-GRACE = 60.0  # to save what was done, after being asked to stop [s]
+GRACE = 60.0  # time for workers to save after being asked to stop [s]
 
 
 class Runner(Protocol):
-    """Whoever does jobs: files of `job.write_job`."""
+    """A runner of jobs, which are files of `job.write_job`."""
 
     def start(self, job: Path) -> None:
         """Begin a job."""
@@ -33,11 +33,11 @@ class Runner(Protocol):
 
     @property
     def free(self) -> int:
-        """How many more jobs can begin now."""
+        """Return the number of further jobs that can begin now."""
         ...
 
     def close(self) -> None:
-        """End the jobs that still run; they can be gone on with."""
+        """End the jobs that still run; they can be continued later."""
         ...
 
 
@@ -48,10 +48,10 @@ class _Child:
 
 
 class Processes:
-    """A process a job. They end when this process does, however it ends.
+    """Runner with one process per job; the processes end when this one does, however it ends.
 
     Args:
-        count: of jobs at the same time.
+        count: number of jobs at the same time.
         command: command that does the job whose file is its next argument.
         options: further arguments of the command.
     """
@@ -71,7 +71,7 @@ class Processes:
 
     @property
     def free(self) -> int:
-        """How many more jobs can begin now."""
+        """Return the number of further jobs that can begin now."""
         return self.count - len(self._children)
 
     def start(self, job: Path) -> None:
@@ -82,7 +82,7 @@ class Processes:
                 stdin=subprocess.PIPE,  # closes when this process ends: the child then ends too
                 stdout=log,
                 stderr=subprocess.STDOUT,
-                start_new_session=True,  # Ctrl-C is ours to answer
+                start_new_session=True,  # Ctrl-C is handled here
                 env=os.environ | {"CI": "true", "PYTHONUNBUFFERED": "1"},
             )
         self._children.append(_Child(process, job))
@@ -112,25 +112,25 @@ class Processes:
 
 
 class RayJobs:
-    """A Ray task a job, on the cluster that RAY_ADDRESS names or here.
+    """Runner with one Ray task per job, on the cluster that RAY_ADDRESS names, or on this machine.
 
-    All machines need this package, and the sweep's folder under the same name. The conductor, not
-    Ray, begins the job of a dead worker again, so that deaths are counted in one place.
+    All machines need this package, and the sweep's folder under the same path. The conductor, not
+    Ray, restarts the job of a dead worker, so that deaths are counted in one place.
     """
 
     def __init__(self, count: int, function: Callable[[str], str] | None = None) -> None:
         """Connect to Ray.
 
         Args:
-            count: of jobs at the same time.
-            function: that does the job whose file it is given, and returns its last words.
+            count: number of jobs at the same time.
+            function: function that does the job in a given file, and returns its last words.
 
         Raises:
             InputError: Ray is not installed or does not answer.
         """
         self._cluster = RayWorkers(count)
         self._ray: Any = import_module("ray")
-        # A process of its own for every job: JAX's devices are chosen once in a process.
+        # A separate process for every job: a process chooses JAX's devices only once.
         options = {"max_retries": 0, "num_cpus": 1, "max_calls": 1}
         self._remote = self._ray.remote(**options)(function or _work_in_ray)
         self.count = count
@@ -138,7 +138,7 @@ class RayJobs:
 
     @property
     def free(self) -> int:
-        """How many more jobs can begin now."""
+        """Return the number of further jobs that can begin now."""
         return self.count - len(self._flying)
 
     def start(self, job: Path) -> None:
@@ -158,7 +158,7 @@ class RayJobs:
                 yield job, str(error).strip().splitlines()[0]
 
     def close(self) -> None:
-        """End the workers; what they saved is there."""
+        """End the workers; what they saved stays on disk."""
         for reference in self._flying:
             self._ray.cancel(reference, force=True)
         self._flying = {}
@@ -180,7 +180,7 @@ def engage(kind: str, count: int, allow: Sequence[str] = ()) -> Runner:
     Args:
         kind: "processes" or "ray".
         count: number of jobs at the same time.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
         InputError: the count is below 1, or Ray cannot be used.
@@ -194,7 +194,7 @@ def engage(kind: str, count: int, allow: Sequence[str] = ()) -> Runner:
 
 
 def log_of(job: Path) -> Path:
-    """Return the file that keeps what a job's worker said."""
+    """Return the file with the output of a job's worker."""
     return job.with_suffix(".log")
 
 

@@ -1,4 +1,4 @@
-"""Where a sweep's trials are remembered: a journal file, or whatever Optuna can reach by an URL."""
+"""The storage of a sweep's trials: a journal file, or any storage that Optuna reaches by URL."""
 
 import logging
 import warnings
@@ -8,14 +8,14 @@ from typing import Any
 
 from jaxleas.types.errors import InputError
 
-SECONDS = 10.0  # to wait for a storage proxy
+SECONDS = 10.0  # time to wait for a storage proxy
 
 
 def require_optuna() -> Any:
-    """Return the module `optuna`, quiet.
+    """Return the module `optuna`, with its log silenced.
 
     Raises:
-        InputError: it is not installed.
+        InputError: Optuna is not installed.
     """
     try:
         optuna = import_module("optuna")
@@ -30,12 +30,12 @@ def open_storage(where: str | None, journal: Path) -> Any:
     """Return Optuna's storage.
 
     Args:
-        where: None: the journal file; grpc://HOST:PORT: a storage proxy; FILE.log: a journal file
-            elsewhere; any other URL: a database.
-        journal: file of the default.
+        where: location of the storage: grpc://HOST:PORT is a storage proxy, FILE.log a journal
+            file elsewhere, any other URL a database; None: the default journal file.
+        journal: default journal file.
 
     Raises:
-        InputError: it cannot be reached, or its driver is not installed.
+        InputError: the storage cannot be reached, or its driver is not installed.
     """
     optuna = require_optuna()
     if where is None:
@@ -56,14 +56,14 @@ def open_storage(where: str | None, journal: Path) -> Any:
         return optuna.storages.RDBStorage(where)
     except ImportError as error:
         raise InputError(f"--storage {where}: its driver is not installed: {error}") from error
-    except Exception as error:  # SQLAlchemy and each driver have their own kinds
+    except Exception as error:  # SQLAlchemy and each driver have their own errors
         raise InputError(f"--storage {where} cannot be reached: {_first_line(error)}") from error
 
 
 def mend_journal(path: Path) -> None:
-    """Take away what a killed writer left: half a last line, and its lock.
+    """Remove the leftovers of a killed writer: an incomplete last line, and its lock.
 
-    Only for a journal that nobody else writes now.
+    Use this only for a journal that no other process is writing.
     """
     for leftover in path.parent.glob(f"{path.name}.lock*"):
         leftover.unlink(missing_ok=True)
@@ -96,7 +96,7 @@ def _proxy(optuna: Any, where: str) -> Any:
         raise InputError(f"--storage {where} needs grpcio: pip install 'jaxleas[sweep]'") from error
     except Exception as error:
         raise InputError(
-            f"--storage {where} cannot be reached: nobody answered within {SECONDS:.0f} s"
+            f"--storage {where} cannot be reached: no answer within {SECONDS:.0f} s"
         ) from error
     return proxy
 

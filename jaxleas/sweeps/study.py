@@ -1,4 +1,4 @@
-"""A sweep's study in Optuna: made or gone on with, and asked for trials one number at a time."""
+"""A sweep's study in Optuna: new or continued; it gives out trials one number at a time."""
 
 import warnings
 from dataclasses import asdict
@@ -21,12 +21,12 @@ OWNER, SWEEP, RESULT = "owner", "sweep", "result"  # attributes of trials and st
 class Study:
     """All trials of a sweep; several machines may share one through a storage.
 
-    Every trial has one number below `trials` and is told once: a number that was drawn but not
-    told is gone on with by the machine that drew it.
+    Every trial has one number below `trials` and is reported once: a trial that was drawn but not
+    reported is continued by the machine that drew it.
     """
 
     def __init__(self, sweep: Sweep, folder: SweepFolder, storage: str | None) -> None:
-        """Make the study, or go on with it.
+        """Make the study, or continue it.
 
         Raises:
             InputError: the storage cannot be used, or holds another sweep of this name.
@@ -63,12 +63,12 @@ class Study:
             )
 
     def open_trials(self) -> list[Any]:
-        """Return the trials that this machine drew and has not told yet, by number."""
+        """Return the trials that this machine drew and has not reported yet, by number."""
         state = self._optuna.trial.TrialState.RUNNING
         trials = self._study.get_trials(deepcopy=False, states=(state,))
         ours = [each for each in trials if each.user_attrs.get(OWNER, self._owner) == self._owner]
-        # A trial without an owner was being drawn when its machine was killed. It is ours if
-        # nobody shares the storage; if somebody does, whoever takes it first goes on with it.
+        # A trial without an owner was being drawn when its machine was killed. It is ours if the
+        # storage is not shared; otherwise the machine that takes it first continues it.
         opened = []
         for each in ours:
             if each.number < self.sweep.config.trials:
@@ -77,7 +77,7 @@ class Study:
         return opened
 
     def ask(self) -> Any | None:
-        """Return a new trial; None when all numbers are given out."""
+        """Return a new trial; None when all numbers have been given out."""
         trials, given = self.sweep.config.trials, len(self._study.get_trials(deepcopy=False))
         if given >= trials:
             return None
@@ -89,7 +89,7 @@ class Study:
         return trial
 
     def _choose_sampler(self, number: int) -> None:
-        """Draw each trial from a stream of its own: the same after a resume, never twice."""
+        """Draw each trial from its own random stream: the same after a resume, never used twice."""
         config = self.sweep.config
         self._study.sampler = _sampler(self._optuna, config.sampler, config.seed + 7919 * number)
 
@@ -100,7 +100,7 @@ class Study:
         return draw(trial, self.sweep)
 
     def reported(self, trial: Any) -> int:
-        """Return how many examinations of a trial were reported before."""
+        """Return the number of examinations of a trial that were reported before."""
         return len(self._study.get_trials(deepcopy=False)[trial.number].intermediate_values)
 
     def report(self, trial: Any, examination: int, success: float) -> bool:
@@ -122,19 +122,19 @@ class Study:
         """Return the results of all machines, by number.
 
         Raises:
-            InputError: the storage holds what is none.
+            InputError: the storage holds a value that is not a result.
         """
-        told = [
+        reported = [
             typed(TrialResult, each.user_attrs[RESULT], f"trial {each.number} of the storage")
             for each in self._study.get_trials(deepcopy=False)
             if each.state.is_finished() and RESULT in each.user_attrs
         ]
-        return sorted(told, key=lambda result: result.number)
+        return sorted(reported, key=lambda result: result.number)
 
     def importance(self) -> dict[str, float]:
-        """Return how much each searched field matters for the first objective, by PED-ANOVA.
+        """Return the importance of each searched field for the first objective, by PED-ANOVA.
 
-        Empty where too few trials are there, or all are as good.
+        It is empty if there are too few trials, or all are equally good.
         """
         objectives = self.sweep.config.objectives
         sign = -1.0 if is_maximised(objectives[0]) else 1.0
@@ -153,7 +153,7 @@ def read_results(folder: Path) -> list[TrialResult]:
     """Read a sweep's results.json.
 
     Raises:
-        InputError: it is missing or no results of a sweep.
+        InputError: the file is missing or not the results of a sweep.
     """
     path = Path(folder) / "results.json"
     content = read_json(path)

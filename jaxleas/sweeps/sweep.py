@@ -27,23 +27,24 @@ def run_sweep(
     parallel: int | None = None,
     on_change: Callable[[list[TrialResult], int], None] = lambda results, running: None,
 ) -> list[TrialResult]:
-    """Conduct a sweep to its end; in a folder where it was begun, go on.
+    """Conduct a sweep to its end; continue it if the folder already holds it.
 
     Args:
-        sweep: or its file.
+        sweep: sweep, or path of its file.
         out: folder to work in.
-        storage: of Optuna: grpc://HOST:PORT, a database URL, a journal FILE.log; by default a
-            journal in the folder.
-        workers: processes, or ray.
-        parallel: jobs at the same time; by default as the sweep says.
-        on_change: told all results so far and the number of running jobs whenever that changed.
+        storage: storage of Optuna: grpc://HOST:PORT, a database URL, a journal FILE.log; by default
+            a journal in the folder.
+        workers: kind of workers: processes, or ray.
+        parallel: number of jobs at the same time; by default as in the sweep.
+        on_change: function that is called with all results so far and the number of running jobs
+            whenever they changed.
 
     Returns:
         The results of all trials, by number.
 
     Raises:
         InputError: sweep, folder, storage or workers cannot be used.
-        InterruptedSweepError: a signal asked to stop; the same call goes on.
+        InterruptedSweepError: a signal asked to stop; the same call continues.
     """
     require_optuna()
     sweep = sweep if isinstance(sweep, Sweep) else open_sweep(sweep)
@@ -55,7 +56,7 @@ def run_sweep(
             count = sweep.config.parallel if parallel is None else parallel
             runner = engage(workers, count, sweep.allow)
         except InputError:
-            if is_new:  # nothing is left of a sweep that could not begin
+            if is_new:  # leave nothing behind of a sweep that could not begin
                 shutil.rmtree(folder.path)
             raise
         results = Conductor(sweep, folder, study, runner, on_change).run()

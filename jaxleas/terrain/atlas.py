@@ -15,8 +15,8 @@ from jaxleas.xla.angles import sine_cosine
 from jaxleas.xla.compute_once import compute_once
 from jaxleas.xla.huge_pages import hold_in_huge_pages
 
-_ROUND = 12582912.0  # 1.5 * 2^23: added to a float32, it leaves a whole number in the last bits
-_ROUND_BITS = 0x4B400000  # its own bits
+_ROUND = 12582912.0  # 1.5 * 2^23: adding it to a float32 leaves a whole number in the last bits
+_ROUND_BITS = 0x4B400000  # the bits of _ROUND
 
 
 @struct.dataclass
@@ -24,8 +24,8 @@ class Atlas:
     """Height maps of one resolution, padded with void to one shape.
 
     Attributes:
-        heights: terrain height [m], NO_GROUND where there is none; the outermost cells of every
-            map are NO_GROUND, so that clamping an index is the same as leaving the map.
+        heights: terrain height [m], NO_GROUND where there is no ground; the outermost cells of
+            every map are NO_GROUND, so that clamping an index is the same as leaving the map.
         origin: x, y of the centre of each map's cell (0, 0) [m].
         resolution: side of a cell [m].
     """
@@ -40,7 +40,7 @@ class Atlas:
 
     @property
     def always(self) -> Bool[Array, ""]:
-        """True, which the compiler does not know (`compute_once`)."""
+        """A true value, which the compiler does not know (`compute_once`)."""
         return self.origin[0, 0] > -jnp.inf
 
     def height_at(
@@ -69,23 +69,23 @@ class Atlas:
         then: Callable[..., Array] = lambda heights: heights,
         *numbers: Float[Array, "*batch"],
     ) -> Float[Array, "*batch points"]:
-        """Return the terrain height under points that a root carries with it, relative to it [m].
+        """Return the terrain height under points fixed to the root, relative to the root [m].
 
-        As `height_at` of these points, but what is one number a robot is computed once a robot.
+        This equals `height_at` of these points, but values per robot are computed once per robot.
 
         Args:
-            map_index: of each robot's map.
-            position: of the root in the world [m].
-            yaw: of the root [rad].
-            points_in_root: the points, the same for all robots [m].
-            then: done to the heights in the same pass over them, so that they are not kept.
-            numbers: of each robot, that `then` asks for.
+            map_index: index of each robot's map.
+            position: position of the root in the world [m].
+            yaw: heading of the root [rad].
+            points_in_root: points in the root frame, the same for all robots [m].
+            then: function applied to the heights in the same pass, so that they are not stored.
+            numbers: values of each robot, as further arguments of `then`.
         """
         _, rows, columns = self.heights.shape
         cells_per_metre = 1.0 / self.resolution
         cell = (position[..., :2] - self.origin[map_index]) * cells_per_metre
         sine, cosine = (each * cells_per_metre for each in sine_cosine(yaw))
-        # What the bits of a shifted row and column hold beside their numbers is taken off here.
+        # This subtracts the bits of `_ROUND` from the bits of a shifted row and column.
         first = map_index.astype(jnp.uint32) * jnp.uint32(rows * columns)
         first -= jnp.uint32(_ROUND_BITS * (columns + 1) % 2**32)
         ahead, left = (
@@ -112,8 +112,8 @@ class Atlas:
 def _nearest(cell: Float[Array, "*batch"], count: int) -> UInt32[Array, "*batch"]:
     """Return the nearest of the cells 0..count - 1, plus `_ROUND_BITS`.
 
-    As clip, round and a cast would, in a third of the instructions: these look after NaN and after
-    what no integer holds.
+    The result is that of clip, round and a cast, in a third of the instructions: those also handle
+    NaN and values that no integer can hold.
     """
     cell = jnp.where(cell > 0.0, cell, 0.0)
     cell = jnp.where(cell < count - 1.0, cell, count - 1.0)
@@ -124,7 +124,7 @@ def make_atlas(maps: Sequence[HeightMap]) -> Atlas:
     """Stack height maps of one resolution into an atlas.
 
     Args:
-        maps: at least one height map; they may differ in shape and origin.
+        maps: height maps, at least one; they may differ in shape and origin.
 
     Raises:
         InputError: there is no map, or the resolutions differ.

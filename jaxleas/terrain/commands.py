@@ -28,17 +28,17 @@ def show(
     z_max: float | None = None,
     zero_is_void: bool = False,
 ) -> Path:
-    """Draw a terrain file from above, and say its size.
+    """Draw a terrain file from above, and print its size.
 
     Args:
         file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        out: the picture; by default NAME_view.png in the current folder.
+        out: file of the picture; by default NAME_view.png in the current folder.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black in a .png means no ground.
     """
     picture = Path(f"{file.stem}_view.png") if out is None else out
     height_map = import_terrain(
@@ -70,13 +70,13 @@ def convert(
 
     Args:
         file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        out: the height map, .npz; of a mesh also the scene of its polygons, .json.
+        out: file of the height map, .npz; for a mesh also .json, the scene of its polygons.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black in a .png means no ground.
     """
     if file.suffix.lower() in SUFFIXES and out.suffix == ".json":
         scene = mesh_to_scene(file, up, scale)
@@ -103,10 +103,10 @@ def generate(*, out: Path, seed: int = 0, rows: int = 5, columns: int = 5) -> Pa
     """Generate a random arena of tiles as a scene (.json).
 
     Args:
-        out: the scene, .json.
-        seed: of the arena; the same seed gives the same arena.
-        rows: tiles of 2 m along y.
-        columns: tiles of 2 m along x.
+        out: file of the scene, .json.
+        seed: seed of the arena; the same seed gives the same arena.
+        rows: number of tiles of 2 m along y.
+        columns: number of tiles of 2 m along x.
     """
     _require_suffix(out, ".json")
     if seed < 0:
@@ -130,9 +130,9 @@ def scenario(name: str, *, out: Path, seed: int = 0) -> Path:
     """Write a named scenario as a scene (.json) with its start and goal areas.
 
     Args:
-        name: e.g. hole, stairs_up or long_course; a wrong name is answered with all of them.
-        out: the scene, .json.
-        seed: of the terrain; evaluation begins at 2000000.
+        name: name such as hole, stairs_up or long_course; a wrong name prints all of them.
+        out: file of the scene, .json.
+        seed: seed of the terrain; evaluation begins at 2000000.
     """
     _require_suffix(out, ".json")
     if seed < 0:

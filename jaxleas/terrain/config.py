@@ -1,4 +1,4 @@
-"""The numbers of the tile generator (T 3.3.2 and the author's published arenas), all named."""
+"""The configuration of the tile generator (T 3.3.2 and the author's published arenas)."""
 
 from typing import Annotated
 
@@ -23,17 +23,17 @@ class ObstaclesConfig(Strict):
     """Boxes on initial tiles."""
 
     probability: Fraction = 0.5
-    """that an initial tile carries boxes"""
+    """probability that an initial tile carries boxes"""
     count: Annotated[int, Field(ge=1, le=4)] = 1
-    """boxes a tile, each in a quarter of its own"""
+    """number of boxes per tile, each in a different quarter"""
     length: Interval = (0.15, 0.5)
     """first side of a box [m]"""
     width: Interval = (0.15, 0.67)
     """second side of a box [m]"""
     height: Interval = (0.7, 2.0)
-    """above the tile [m]"""
+    """height of a box above the tile [m]"""
     distance: Interval = (0.3, 0.5)
-    """from the tile's centre to the box, along each axis [m]"""
+    """distance from the tile's centre to the box, along each axis [m]"""
 
 
 class RubbleConfig(Strict):
@@ -54,75 +54,75 @@ class BridgeConfig(Strict):
     narrow: Interval = (0.30, 0.45)
     """width of a narrow bridge [m]"""
     sloped_probability: Fraction = 0.5
-    """that a bridge into the empty climbs or falls"""
+    """probability that a bridge into an empty cell climbs or falls"""
     rise: PositiveFloat = 0.15
-    """largest climb or fall of a bridge into the empty [m]"""
+    """largest climb or fall of a bridge into an empty cell [m]"""
 
 
 class StairsConfig(Strict):
     """Transition of steps with equal risers."""
 
     climb: Interval = (0.4, 1.0)
-    """height climbed by stairs into the empty [m]"""
+    """height climbed by stairs into an empty cell [m]"""
     depth: Interval = (0.2, 0.4)
-    """of a step [m]"""
+    """depth of a step [m]"""
     width: Interval = (1.67, 2.0)
-    """of a step [m]"""
+    """width of a step [m]"""
     riser_max: PositiveFloat = 0.2
-    """highest single step [m]: a robot of Talos's size climbs it"""
+    """height of the highest single step [m]: a robot of Talos's size can climb it"""
     slope_max: PositiveFloat = 0.65
     """climb over run of stairs between landings: 33 degrees, as steep as buildings have"""
     landing_probability: Fraction = 0.3
-    """that the steps do not fill the tile: fewer, higher ones between two flat landings"""
+    """probability that the steps do not fill the tile: fewer, higher ones between two landings"""
 
 
 class DetourConfig(Strict):
-    """Level transition that has to be walked round: a hole in the ground, or a wall across it."""
+    """Level transition with something to walk around: a hole in the ground, or a wall across it."""
 
     length: Interval = (0.3, 1.6)
-    """of the hole along the crossing [m]"""
+    """length of the hole along the crossing [m]"""
     thickness: Interval = (0.15, 0.4)
-    """of the wall [m]"""
+    """thickness of the wall [m]"""
     height: Interval = (0.7, 2.0)
-    """of the wall above the tile [m]"""
+    """height of the wall above the tile [m]"""
     width: Interval = (0.5, 1.1)
-    """of the hole or wall across the crossing [m]: from anywhere before it a way round lies within
-    the 0.6 m that a local policy sees to a side"""
+    """width of the hole or wall across the crossing [m]: from anywhere before it, a way around lies
+    within the 0.6 m that a local policy sees to each side"""
     rim: PositiveFloat = 0.45
-    """of the ground beside the hole, at either side at least [m]"""
+    """smallest width of the ground on either side of the hole [m]"""
 
 
 class GeneratorConfig(Strict):
     """An arena of tiles: initial ones (flat, obstacles) joined by transitions."""
 
     rows: Annotated[int, Field(ge=1, le=200)] = 5
-    """tiles along y"""
+    """number of tiles along y"""
     columns: Annotated[int, Field(ge=1, le=200)] = 5
-    """tiles along x"""
+    """number of tiles along x"""
     tile_size: Annotated[float, Field(ge=1.2, le=10.0)] = 2.0
     """edge of a tile [m]"""
     inset: Annotated[float, Field(ge=0.0, le=0.02)] = 0.01
-    """by which every contact rectangle is smaller a side [m]"""
+    """length by which every contact rectangle is shrunk on each side [m]"""
     transition_probability: Fraction = 0.8
-    """that an initial tile is followed by a transition; else by another initial tile"""
+    """probability that an initial tile is followed by a transition; else by another initial tile"""
     dead_end_probability: Fraction = 0.3
-    """that a transition which cannot be continued is built all the same, and leads nowhere"""
+    """probability that a transition that cannot be continued is built anyway, and leads nowhere"""
     detour_probability: Fraction = 0.0
-    """that a transition into the empty is a hole or a wall; the thesis's generator has none"""
+    """probability that a transition into an empty cell is a hole or a wall; the thesis has none"""
     stairs_probability: Fraction = 0.55
-    """that a transition into the empty is stairs"""
+    """probability that a transition into an empty cell is stairs"""
     bridge_probability: Fraction = 0.30
-    """that a transition into the empty is a bridge; what is left is rubble"""
+    """probability that a transition into an empty cell is a bridge; the others are rubble"""
     bridge_only_below: PositiveFloat = 0.15
-    """two initial tiles of a smaller height difference are joined by a bridge [m]"""
+    """height difference of two initial tiles below which a bridge joins them [m]"""
     bridge_below: PositiveFloat = 0.25
-    """two initial tiles of a smaller height difference are joined by a bridge or stairs [m]"""
+    """height difference of two initial tiles below which a bridge or stairs join them [m]"""
     stairs_below: PositiveFloat = 1.0
-    """two initial tiles of a smaller height difference are joined by stairs, else not [m]"""
+    """height difference of two initial tiles below which stairs join them, else nothing [m]"""
     cliff_above: PositiveFloat = 0.4
-    """initial tiles side by side with a larger height difference are a dead end [m]"""
+    """height difference of neighbouring initial tiles above which they are a dead end [m]"""
     level_below: PositiveFloat = 0.1
-    """initial tiles in a row with smaller height differences are a flat link [m]"""
+    """height difference of initial tiles in a row below which they are a flat link [m]"""
     obstacles: ObstaclesConfig = ObstaclesConfig()
     rubble: RubbleConfig = RubbleConfig()
     bridge: BridgeConfig = BridgeConfig()

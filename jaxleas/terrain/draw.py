@@ -1,4 +1,4 @@
-"""Pictures of height maps in the style of T figures 3.14-3.17: the brighter, the higher."""
+"""Pictures of height maps in the style of T figures 3.14-3.17: higher ground is brighter."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,11 +18,11 @@ VOID_COLOUR = "#c9d7e8"
 DARK, BRIGHT = 0.16, 0.97
 """Grey of the lowest and of the highest ground."""
 RELIEF = 0.10
-"""How much a slope of 1 towards or away from the light brightens or darkens."""
+"""Amount by which a slope of 1 towards or away from the light brightens or darkens."""
 MOST_PIXELS = 1600
-"""Larger maps are thinned before they are drawn."""
+"""Largest side of a map that is drawn whole [cells]; larger maps are thinned first."""
 LARGEST_SIDE = 10.0
-"""Of a figure that this module makes [inches]."""
+"""Size of a figure that this module makes [inches]."""
 
 
 def draw_height_map(
@@ -35,10 +35,10 @@ def draw_height_map(
     """Draw a height map and return the axes, for paths to be drawn over it.
 
     Args:
-        height_map: what to draw.
-        path: where to write the picture (.png, .svg, .pdf), if anywhere.
-        ax: the axes to draw on; new ones by default.
-        title: above the picture.
+        height_map: height map to draw.
+        path: file for the picture (.png, .svg, .pdf); None: it is not written.
+        ax: axes to draw on; new ones by default.
+        title: title above the picture.
         colour_bar: whether to draw the scale of heights.
 
     Raises:
@@ -75,7 +75,7 @@ def _new_axes(height_map: HeightMap) -> "Axes":
 
 
 def _scale(heights: Float[np.ndarray, "R C"]) -> "tuple[Normalize, Colormap]":
-    """Return the grey scale: a few tall boxes are above its end, lest they darken the ground."""
+    """Return the grey scale; a few tall boxes exceed it, so that they do not darken the ground."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
 
     ground = heights[np.isfinite(heights)]
@@ -99,7 +99,7 @@ def _shaded(
     filled = np.where(void, 0.0, heights)
     pixels = greys(scale(filled))[..., :3]
     along_y, along_x = np.gradient(filled, *spacing)
-    # light from the upper left; a cell beside the void has no slope worth the name
+    # light from the upper left; a cell next to the void has no meaningful slope
     light = np.clip((along_x - along_y) / np.sqrt(2.0), -1.0, 1.0)
     beside = np.zeros_like(void)
     beside[1:] |= void[:-1]

@@ -28,9 +28,9 @@ class Arena:
     """A random terrain with tasks.
 
     Attributes:
-        scene: its polygons; the corner of tile (0, 0) is the world's origin.
-        tiles: kind and heights a cell, [row = y, column = x].
-        links: tasks, each undirected link twice.
+        scene: polygons of the terrain; the corner of tile (0, 0) is the world's origin.
+        tiles: kind and heights of each cell, [row = y, column = x].
+        links: tasks, with each undirected link twice.
         dead_ends: tasks that cannot be done, from every initial tile.
     """
 
@@ -41,7 +41,7 @@ class Arena:
 
 
 def generate_arena(config: GeneratorConfig, seed: int) -> Arena:
-    """Return the arena of a seed: the same one, always, for the same configuration."""
+    """Return the arena of a seed: always the same one for the same configuration."""
     builder = _Builder(config, np.random.default_rng(seed))
     builder.fill()
     tiles = tuple(tuple(row) for row in builder.tiles)
@@ -54,7 +54,7 @@ def generate_arena(config: GeneratorConfig, seed: int) -> Arena:
 
 
 class _Builder:
-    """Grows the tree of tiles, one random (initial tile, direction) of the frontier at a time."""
+    """Builder of the tree of tiles: it extends one random edge of the frontier at a time."""
 
     def __init__(self, config: GeneratorConfig, rng: np.random.Generator):
         self.config, self.rng = config, rng
@@ -75,7 +75,7 @@ class _Builder:
             self.grow(*self.frontier.pop())
 
     def grow(self, cell: Cell, direction: Cell) -> None:
-        """Fill the neighbour of an initial tile in a direction, and what follows a transition."""
+        """Fill the neighbour of an initial tile in a direction, and the cell after a transition."""
         near = (cell[0] + direction[0], cell[1] + direction[1])
         far = (near[0] + direction[0], near[1] + direction[1])
         if not self.is_empty(near):
@@ -96,7 +96,7 @@ class _Builder:
             self.place_initial(near, height)
 
     def draw_transition(self, height: float) -> tuple[TileKind, float]:
-        """Return a transition into the empty, and the height it leads to."""
+        """Return a transition into an empty cell, and the height that it leads to."""
         config, rng = self.config, self.rng
         if config.detour_probability > 0.0 and rng.random() < config.detour_probability:
             return (TileKind.HOLE if rng.random() < 0.5 else TileKind.WALL), height
@@ -110,7 +110,7 @@ class _Builder:
         return TileKind.RUBBLE, height
 
     def join(self, near: Cell, direction: Cell, height: float, far_height: float) -> None:
-        """Join two initial tiles by what their height difference admits, else leave a cliff."""
+        """Join two initial tiles by what their height difference allows, or leave a cliff."""
         difference, config = abs(far_height - height), self.config
         if difference >= config.stairs_below:
             self.place_initial(near, height)

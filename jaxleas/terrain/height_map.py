@@ -1,4 +1,4 @@
-"""Height maps: one height a cell, NaN where there is no ground."""
+"""Height maps: one height per cell, NaN where there is no ground."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,12 +10,12 @@ from jaxleas.files import read_npz, require_version_array, write_npz
 from jaxleas.types import InputError, is_ground
 
 MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 0.5
-"""Accepted cell sizes [m]: finer is not needed by a foot, coarser misses bridges and steps."""
+"""Accepted cell sizes [m]: a foot needs no finer cells, and coarser ones miss bridges and steps."""
 MAX_CELLS = 64_000_000
 MAX_BYTES = 4 * MAX_CELLS + 2**20
 VERSION = 1
 MAX_HEIGHT = 10_000.0
-"""A height beyond this is a unit mistake, not a terrain [m]."""
+"""Height above which the units are probably wrong [m]."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class HeightMap:
     """A terrain as a grid of heights.
 
     Attributes:
-        heights: row = y, column = x [m]; NaN = no ground.
+        heights: heights [row = y, column = x] [m]; NaN where there is no ground.
         resolution: edge of a cell [m].
         origin: x, y of the centre of cell (0, 0) [m].
     """
@@ -50,7 +50,7 @@ class HeightMap:
         return float(1.0 - is_ground(self.heights).mean())
 
     def height_at(self, points: Float[np.ndarray, "N 2"]) -> Float32[np.ndarray, " N"]:
-        """Return the height of the cell that holds each point (x, y) [m]; NaN outside the map."""
+        """Return the height of the cell around each point (x, y) [m]; NaN outside the map."""
         points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         rows, columns = self.shape
         cells = np.floor((points - np.array(self.origin)) / self.resolution + 0.5)
@@ -63,7 +63,7 @@ def read_height_map(path: str | Path) -> HeightMap:
     """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` x, y [m].
 
     Raises:
-        InputError: says which array is missing or unusable, and what would do.
+        InputError: an array is missing or unusable; the message says which, and what would do.
     """
     arrays = read_npz(path, required=("heights", "resolution", "origin"), max_bytes=MAX_BYTES)
     require_version_array(arrays, VERSION, path)
@@ -102,7 +102,7 @@ def write_height_map(path: str | Path, height_map: HeightMap) -> None:
 def require_usable(
     heights: Float[np.ndarray, "rows columns"], resolution: float, where: str | Path
 ) -> None:
-    """Refuse heights that hold no ground, infinities or kilometres, and absurd cell sizes."""
+    """Refuse heights without ground, with infinities or kilometres, and absurd cell sizes."""
     require_resolution(resolution, where)
     if heights.size > MAX_CELLS:
         raise InputError(f"{where}: {heights.size} cells, more than the {MAX_CELLS} accepted")

@@ -1,4 +1,4 @@
-"""Real terrains from files: meshes, images, height maps and scenes, all to a height map."""
+"""Real terrains from files: meshes, images, height maps and scenes, converted to height maps."""
 
 import io
 import struct
@@ -22,7 +22,7 @@ from jaxleas.terrain.scene import read_scene
 from jaxleas.types.errors import InputError
 
 SEAM = 1e-3
-"""Triangles are grown by this much [m]: neighbours in real meshes do not always quite meet."""
+"""Length by which triangles are grown [m]: neighbours in real meshes do not always meet exactly."""
 MESH_MARGIN = 0.1
 """Width of void around an imported mesh [m]."""
 WHITE = 65535
@@ -42,16 +42,16 @@ def import_terrain(
     """Return the height map of a terrain file, read by its suffix.
 
     Args:
-        path: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        path: path of a .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
         resolution: edge of a cell [m]; 0.04 by default for meshes and scenes, needed for .png.
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means that there is no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black in a .png means that there is no ground.
 
     Raises:
-        InputError: the suffix is unknown, the file unusable, or an option missing.
+        InputError: the suffix is unknown, the file is unusable, or an option is missing.
     """
     suffix = Path(path).suffix.lower()
     if suffix == ".npz":
@@ -80,14 +80,14 @@ def import_mesh(
 ) -> HeightMap:
     """Return the height map of a mesh: the highest triangle above each cell centre.
 
-    Closed bodies work, their tops hide their bottoms; vertical faces have no height. What is
-    thinner than a cell, a handrail say, can fall between cell centres: take a finer resolution.
+    Closed bodies work, as their tops hide their bottoms; vertical faces have no height. Objects
+    thinner than a cell, such as a handrail, can fall between cell centres: use a finer resolution.
 
     Args:
-        path: an STL or OBJ file.
+        path: path of an STL or OBJ file.
         resolution: edge of a cell [m].
-        up: the mesh's axis that points up.
-        scale: metres a unit of the file.
+        up: axis of the mesh that points up.
+        scale: metres per unit of the file.
 
     Raises:
         InputError: the file is unreadable, is not a terrain, or makes too large a map.
@@ -105,7 +105,7 @@ def import_png(
     """Return the height map of a 16-bit grey image: black is z_min, white is z_max, north up.
 
     Args:
-        path: a 16-bit greyscale PNG file; its last row is the map's first.
+        path: path of a 16-bit greyscale PNG file, whose last row is the map's first.
         resolution: edge of a pixel [m].
         z_min: height of value 0 [m].
         z_max: height of value 65535 [m].
@@ -119,7 +119,7 @@ def import_png(
         raise InputError(f"{path}: z_min {z_min:g} m must be below z_max {z_max:g} m")
     values = np.flipud(_grey_values(Path(path)))
     heights: np.ndarray = np.empty(values.shape, np.float32)
-    for row, line in enumerate(values):  # in float64, a row at a time
+    for row, line in enumerate(values):  # in float64, row by row
         heights[row] = z_min + (z_max - z_min) * (line / WHITE)
     if zero_is_void:
         heights[values == 0] = np.nan
@@ -146,14 +146,14 @@ def _grey_values(path: Path) -> Int[np.ndarray, "rows columns"]:
                     f"{path} is a PNG of mode {image.mode}; heights need 16-bit grey (mode I;16)"
                 )
             return np.asarray(image).astype(np.uint16).reshape(height, width)
-    # Pillow's own, over chunks that are cut short or hold something else; texts in them it bounds.
+    # Pillow's errors for chunks that are cut short or hold something else; it bounds their texts.
     except (OSError, ValueError, SyntaxError, IndexError, struct.error, zlib.error) as error:
         words = " ".join(str(error).split())[:100]
         raise InputError(f"{path} is not a readable PNG image: {words}") from error
 
 
 def _png_size(path: Path, content: bytes) -> tuple[int, int]:
-    """Return width and height as its first chunk states them, before Pillow takes memory."""
+    """Return width and height from the first chunk, before Pillow allocates memory."""
     if content[:8] != b"\x89PNG\r\n\x1a\n" or content[12:16] != b"IHDR":
         raise InputError(f"{path} is not a readable PNG image: it does not begin like one")
     return int.from_bytes(content[16:20], "big"), int.from_bytes(content[20:24], "big")

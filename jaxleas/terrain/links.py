@@ -1,4 +1,4 @@
-"""Links: initial tile, transition, initial tile in a line, to be crossed either way (T 3.3.2)."""
+"""Links: initial tile, transition, initial tile in a line, crossed either way (T 3.3.2)."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -12,7 +12,7 @@ LinkKind = Literal[
     "flat", "obstacles", "rubble", "bridge", "stairs_up", "stairs_down", "detour", "cliff", "void"
 ]
 Area = tuple[float, float, float, float]
-"""x_min, x_max, y_min, y_max [m]."""
+"""Rectangle x_min, x_max, y_min, y_max [m]."""
 Cell = tuple[int, int]
 """Row, column."""
 GOAL_SIZE = 1.0
@@ -24,11 +24,13 @@ class Tile:
     """One cell of an arena.
 
     Attributes:
-        kind: what it holds.
-        height: of an initial tile; of a transition's entry edge [m].
-        exit_height: of a transition's exit edge; of an initial tile as `height` [m].
-        direction: of a transition, entry to exit, as (row, column) steps; (0, 0) otherwise.
-        difficulty: as in `Link`; of an initial tile the number of its boxes.
+        kind: kind of the tile.
+        height: height of an initial tile, or of a transition's entry edge [m].
+        exit_height: height of a transition's exit edge; for an initial tile the same as `height`
+            [m].
+        direction: direction of a transition from entry to exit, as (row, column) steps; (0, 0)
+            otherwise.
+        difficulty: difficulty as in `Link`; for an initial tile, the number of its boxes.
     """
 
     kind: TileKind = TileKind.VOID
@@ -46,15 +48,15 @@ class Link:
     "obstacles" link when any of them carries a box (of 86 links in T fig. 3.12 these are 30).
 
     Attributes:
-        kind: of the transition, or of the ground.
-        difficulty: in its kind's own measure: flat 0; obstacles, the number of boxes on the
-            way; rubble, the steepest rectangle over the steepest possible; bridge,
+        kind: kind of the transition, or of the ground.
+        difficulty: difficulty in the measure of the kind: flat 0; obstacles, the number of boxes
+            on the way; rubble, the steepest rectangle over the steepest possible; bridge,
             1 - width / tile size; stairs, the climb [m]; detour, the blocked width / tile size;
             cliff, the height difference [m]; void 0.
-        start_area: the start tile, inset [m].
-        goal_area: the middle metre of the goal tile [m].
-        start_height: of the start tile [m].
-        goal_height: of the goal tile [m].
+        start_area: rectangle of the start tile, inset [m].
+        goal_area: rectangle of the middle metre of the goal tile [m].
+        start_height: height of the start tile [m].
+        goal_height: height of the goal tile [m].
         direction: unit vector (x, y) from start to goal.
     """
 
@@ -68,7 +70,7 @@ class Link:
 
 
 def find_links(tiles: tuple[tuple[Tile, ...], ...], config: GeneratorConfig) -> tuple[Link, ...]:
-    """Return all links of a grid of tiles, each once a direction."""
+    """Return all links of a grid of tiles, each once per direction."""
     links = []
     for row, column in np.ndindex(len(tiles), len(tiles[0])):
         for down, right in ((0, 1), (1, 0)):
@@ -86,7 +88,7 @@ def find_dead_ends(
 ) -> tuple[Link, ...]:
     """Return the tasks that cannot be done: the goal lies in the void, on a cliff or below one.
 
-    What is learned there is to stop (T sec. 3.2.1, behaviour C).
+    They teach a policy to stop (T sec. 3.2.1, behaviour C).
     """
     dead_ends = []
     for row, column in np.ndindex(len(tiles), len(tiles[0])):
@@ -124,7 +126,7 @@ def _is_crossable(path: list[Tile], step: Cell, config: GeneratorConfig) -> bool
         TileKind.HOLE: config.level_below,
         TileKind.WALL: config.level_below,
         TileKind.BRIDGE: config.bridge_below,
-        # the tallest climb the generator may draw is itself a link
+        # the largest climb that the generator may draw still is a link
         TileKind.STAIRS: max(config.stairs_below, config.stairs.climb[1]) + 1e-9,
     }[middle.kind]
     return max(gaps) < 1e-6 and abs(middle.exit_height - middle.height) < limit

@@ -1,7 +1,7 @@
-"""STL and OBJ files as triangles: little of either format is needed, and strangers write both.
+"""STL and OBJ files as triangles: a small part of either format, read from untrusted files.
 
-Not trimesh's readers: over a damaged file they raise whatever comes first, print tracebacks, and
-take ten times the file's size in memory.
+These are not trimesh's readers: for damaged files those raise arbitrary exceptions, print
+tracebacks, and take ten times the file's size in memory.
 """
 
 from collections.abc import Iterator
@@ -16,16 +16,17 @@ from jaxleas.types.errors import InputError
 
 MAX_TRIANGLES = 5_000_000
 MAX_BYTES = 2**29
-"""Five million triangles are 250 MB of binary STL, and some 350 MB of OBJ."""
+"""Five million triangles are 250 MB of binary STL, and about 350 MB of OBJ."""
 MAX_POLYGON = 1000  # corners of one face
-_HEADER, _RECORD = 84, 50  # bytes of a binary STL: before the triangles, and of each
+_HEADER, _RECORD = 84, 50  # bytes of a binary STL: before the triangles, and per triangle
 
 
 def read_mesh(path: Path) -> Float[np.ndarray, "N 3 3"]:
     """Return the triangles of an .stl (binary or text) or .obj file, in the file's units.
 
     Raises:
-        InputError: the file is missing, too large, damaged, or not of its kind.
+        InputError: the file is missing, too large, damaged, or not of the kind that its suffix
+            says.
     """
     content = read_bytes(path, MAX_BYTES)
     if path.suffix.lower() == ".obj":
@@ -61,7 +62,7 @@ def _obj(path: Path, content: bytes) -> Float[np.ndarray, "N 3 3"]:
         if line[:2] in (b"v ", b"v\t"):
             vertices.append(line[2:])
         elif line[:2] in (b"f ", b"f\t"):
-            # Relative numbers, -1 the last, count from the vertices so far.
+            # Negative numbers are relative to the vertices so far; -1 is the last.
             faces.append((line[2:], len(vertices)))
     points = _vectors(path, vertices)
     corners = [each for face, known in faces for each in _fan(path, face, known)]
@@ -70,7 +71,7 @@ def _obj(path: Path, content: bytes) -> Float[np.ndarray, "N 3 3"]:
 
 
 def _fan(path: Path, face: bytes, known: int) -> Iterator[tuple[int, int, int]]:
-    """Yield the triangles of a face as numbers of vertices, counted from 0."""
+    """Yield the triangles of a face as indices of vertices, counted from 0."""
     words = face.split()
     if not 3 <= len(words) <= MAX_POLYGON:
         raise _broken(path, f"a face has {len(words)} corners")
@@ -78,7 +79,7 @@ def _fan(path: Path, face: bytes, known: int) -> Iterator[tuple[int, int, int]]:
         numbers = [int(word.split(b"/", 1)[0]) for word in words]
     except ValueError as error:
         raise _broken(path, f"{_shown(face)} is no face") from error
-    # A corner 0 is none: no vertex has a negative number.
+    # A corner 0 is invalid, and so becomes a negative index.
     indices = [each - 1 if each > 0 else known + each if each else -1 for each in numbers]
     if not all(0 <= index < known for index in indices):
         raise _broken(path, f"the face {_shown(face)} has a corner that is no vertex before it")

@@ -20,19 +20,19 @@ from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.types.errors import InputError
 
 WELD = 1e-5
-"""Vertices closer than this are one [m]."""
+"""Distance below which vertices are merged [m]."""
 COPLANAR = 1e-6
 """Neighbours are coplanar if 1 - cosine of the angle between their normals is below this."""
 
 
 def mesh_to_scene(path: str | Path, up: Up = "z", scale: float = 1.0) -> Scene:
-    """Return a mesh as a scene of convex polygons; faces that look down are left out.
+    """Return a mesh as a scene of convex polygons; faces that point down are left out.
 
-    Neighbours whose union is planar and convex become one polygon, greedily; what does not merge
-    stays a triangle.
+    Neighbours whose union is planar and convex are merged greedily into one polygon; the others
+    stay triangles.
 
     Raises:
-        InputError: the file is unreadable, or is not a terrain, or nothing in it can be stood on.
+        InputError: the file is unreadable, is not a terrain, or has no face to stand on.
     """
     corners = read_triangles(path, up, scale).reshape(-1, 3)
     _, first, index = np.unique(
@@ -57,7 +57,7 @@ def load_scene(path: str | Path) -> Scene:
     """Return a terrain as polygons: a scene, or a mesh in metres with z up.
 
     Args:
-        path: .json scene, .stl or .obj mesh.
+        path: path of a .json scene, .stl or .obj mesh.
 
     Raises:
         InputError: the file has no polygons, or cannot be used.
@@ -76,7 +76,7 @@ def load_scene(path: str | Path) -> Scene:
 def _merge(
     points: Float[np.ndarray, "P 3"], triangles: Int[np.ndarray, "N 3"]
 ) -> list[Float[np.ndarray, "V 3"]]:
-    """Return convex polygons: across each shared edge both sides join, where that is convex."""
+    """Return convex polygons: both sides of each shared edge are merged if the union is convex."""
     triangles = np.array([face for face in triangles if len(set(face)) == 3]).reshape(-1, 3)
     loops: list[list[int] | None] = [face.tolist() for face in triangles]
     normals = np.array([_normal(points[face]) for face in triangles])
@@ -122,7 +122,7 @@ def _rotated_to(loop: list[int], first: int) -> list[int] | None:
 
 
 def _without_spurs(loop: list[int]) -> list[int]:
-    """Drop a path that goes out along an edge and straight back: the seam of two merged loops."""
+    """Drop paths that go out along an edge and straight back: the seams of two merged loops."""
     index = 0
     while len(loop) > 2 and index < len(loop):
         if loop[index - 1] == loop[(index + 1) % len(loop)]:

@@ -1,4 +1,4 @@
-"""Meshes as triangles, z up and in metres; what is not a terrain is refused."""
+"""Meshes as triangles, z up and in metres; meshes that are not terrains are refused."""
 
 from pathlib import Path
 from typing import Literal
@@ -14,7 +14,7 @@ SUFFIXES = (".stl", ".obj")
 MIN_EXTENT, MAX_EXTENT = 0.5, 1000.0
 """Accepted horizontal sizes of a terrain [m]."""
 AXES: dict[str, tuple[int, int, int]] = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
-"""The mesh axes that become x, y and z: a rotation, for each axis that may point up."""
+"""Mesh axes that become x, y and z (a rotation), for each axis that may point up."""
 
 
 def read_triangles(
@@ -23,17 +23,17 @@ def read_triangles(
     """Return the triangles of a mesh file, z up, in metres; degenerate ones are left out.
 
     Args:
-        path: an STL (binary or text) or OBJ file.
-        up: the mesh's axis that points up.
-        scale: metres a unit of the file, 0.001 for millimetres.
+        path: path of an STL (binary or text) or OBJ file.
+        up: axis of the mesh that points up.
+        scale: metres per unit of the file, 0.001 for millimetres.
 
     Raises:
-        InputError: the file cannot be read, or it is not a terrain.
+        InputError: the file cannot be read, or is not a terrain.
     """
     if up not in AXES:
         raise InputError(f"up is '{up}'; it must be one of x, y, z")
     if not 0.0 < scale < np.inf:
-        raise InputError(f"scale {scale:g} must be a positive number of metres a unit")
+        raise InputError(f"scale {scale:g} must be a positive number of metres per unit")
     if Path(path).suffix.lower() not in SUFFIXES:
         raise InputError(f"{path} is not a mesh this package reads: {', '.join(SUFFIXES)}")
     with np.errstate(over="ignore", invalid="ignore"):  # refused below

@@ -1,4 +1,4 @@
-"""Terrain files of one's own that a configuration names."""
+"""The user's own terrain files, which a configuration names."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,11 +13,11 @@ from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.meshes import Up
 from jaxleas.types.errors import InputError
 
-KEY = "terrain.files"  # what errors call the place where files are named
+KEY = "terrain.files"  # name of the configuration field, for messages
 
 
 class TerrainFile(Strict):
-    """A terrain file, and what it does not say of itself."""
+    """A terrain file, with the values that the file does not state itself."""
 
     file: Annotated[str, Field(min_length=1)]
     """.npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png; found from the working
@@ -43,11 +43,11 @@ def _kind(value: Any) -> str:
 Entry = Annotated[
     Annotated[str, Tag("path")] | Annotated[TerrainFile, Tag("file")], Discriminator(_kind)
 ]
-"""A path alone, or with what the file does not say of itself."""
+"""A path alone, or with the values that the file does not state itself."""
 
 
 def pinned(files: Sequence[Entry]) -> tuple[TerrainFile, ...]:
-    """Return the same files by their absolute paths, each with its digest.
+    """Return the same files with their absolute paths and digests.
 
     Raises:
         InputError: a file is missing.
@@ -64,7 +64,7 @@ def pinned(files: Sequence[Entry]) -> tuple[TerrainFile, ...]:
 
 
 def read_own_terrain(files: Sequence[Entry], resolution: float) -> list[tuple[str, HeightMap]]:
-    """Return what errors call each file, and its height map.
+    """Return the name of each file for messages, and its height map.
 
     Args:
         files: files that a configuration names.

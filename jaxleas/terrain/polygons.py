@@ -1,4 +1,4 @@
-"""Checks on one convex polygon: is it one, which way does it wind, which plane does it span?"""
+"""Checks on a polygon: whether it is convex and planar, its winding, and its plane."""
 
 import math
 
@@ -12,13 +12,13 @@ PLANARITY_TOLERANCE = 1e-3
 CONVEXITY_TOLERANCE = 1e-3
 """Largest accepted distance by which a vertex may lie on the wrong side of an edge [m]."""
 VERTICAL_SLOPE = 1e-3
-"""A polygon whose unit normal's |z| is below this is vertical: it has no height above a point."""
+"""|z| of the unit normal below which a polygon is vertical, without a height above a point."""
 STANDING_SLOPE = 0.5
-"""What looks up with a unit normal whose z is at least this can be stood on by feet."""
+"""Smallest z of a unit normal with which feet can stand on a polygon."""
 MAX_VERTICES = 1000
-"""Of one polygon: checks compare each vertex with each edge."""
+"""Largest number of vertices of a polygon: checks compare each vertex with each edge."""
 MIN_AREA = 1e-6
-"""A polygon smaller than this is degenerate [m^2]."""
+"""Area below which a polygon is degenerate [m^2]."""
 
 
 def polygon_area_vector(vertices: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, " 3"]:
@@ -35,7 +35,7 @@ def is_vertical(vertices: Float[np.ndarray, "V 3"]) -> bool:
 
 def upwardness(vertices: Float[np.ndarray, "V 3"]) -> float:
     """Return the z of the unit normal: 1 for a floor, 0 for a wall, -1 for a ceiling."""
-    x, y, z = (vertices - vertices.mean(axis=0)).T  # written out: `np.cross` takes its time
+    x, y, z = (vertices - vertices.mean(axis=0)).T  # written out, because `np.cross` is slow
     u, v, w = np.roll(x, -1), np.roll(y, -1), np.roll(z, -1)
     area = y @ w - z @ v, z @ u - x @ w, x @ v - y @ u
     return float(area[2] / math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2))
@@ -49,7 +49,7 @@ def planarity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
 
 
 def convexity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
-    """Return how far a vertex lies outside an edge's half-plane, at worst [m]; 0 if convex."""
+    """Return the largest distance of a vertex outside an edge's half-plane [m]; 0 if convex."""
     area = polygon_area_vector(vertices)
     normal = area / np.linalg.norm(area)
     edges = np.roll(vertices, -1, axis=0) - vertices
@@ -60,15 +60,15 @@ def convexity_deviation(vertices: Float[np.ndarray, "V 3"]) -> float:
 
 
 def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall: bool) -> None:
-    """Refuse what is not a planar, convex polygon, counter-clockwise seen from above.
+    """Refuse a polygon that is not planar, convex, and counter-clockwise seen from above.
 
     Args:
         vertices: corners in order [m].
-        where: names the file and the polygon, for the message.
-        wall: whether a vertical polygon is welcome (a side face of an obstacle).
+        where: name of file and polygon, for the message.
+        wall: whether a vertical polygon is accepted (a side face of an obstacle).
 
     Raises:
-        InputError: says which of these it fails, and by how many metres.
+        InputError: the polygon fails a check; the message says which, and by how many metres.
     """
     require_any_orientation(vertices, where)
     if is_vertical(vertices):
@@ -81,14 +81,14 @@ def require_convex_polygon(vertices: Float[np.ndarray, "V 3"], where: str, wall:
 
 
 def require_any_orientation(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
-    """Refuse what is not a planar, convex polygon; it may face anywhere.
+    """Refuse a polygon that is not planar and convex; it may have any orientation.
 
     Args:
         vertices: corners in order [m].
-        where: names the file and the polygon, for the message.
+        where: name of file and polygon, for the message.
 
     Raises:
-        InputError: says which of these it fails, and by how many metres.
+        InputError: the polygon fails a check; the message says which, and by how many metres.
     """
     if len(vertices) < 3:
         raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
@@ -104,7 +104,7 @@ def require_any_orientation(vertices: Float[np.ndarray, "V 3"], where: str) -> N
 
 
 def require_few(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
-    """Refuse a polygon of more vertices than can be checked against each other."""
+    """Refuse a polygon with too many vertices to check against each other."""
     if len(vertices) > MAX_VERTICES:
         raise InputError(f"{where} has {len(vertices)} vertices, more than {MAX_VERTICES}")
 
@@ -113,11 +113,11 @@ def require_planar_and_convex(vertices: Float[np.ndarray, "V 3"], where: str) ->
     """Refuse a polygon that is not planar or not convex within the tolerances.
 
     Args:
-        vertices: at least three, finite, not all on one line [m].
-        where: what to call the polygon in a sentence.
+        vertices: corners in order: at least three, finite, not all on one line [m].
+        where: name of file and polygon, for the message.
 
     Raises:
-        InputError: says which it is not, and by how many metres.
+        InputError: the polygon fails a check; the message says which, and by how many metres.
     """
     deviation = planarity_deviation(vertices)
     if deviation > PLANARITY_TOLERANCE:
@@ -139,7 +139,7 @@ def box_faces(
     """Return the top and the four side faces of an upright box, wound outwards.
 
     Args:
-        corners: of the footprint, counter-clockwise from above [m].
+        corners: corners of the footprint, counter-clockwise seen from above [m].
         bottom: height of the box's foot [m].
         top: height of its top face [m].
 

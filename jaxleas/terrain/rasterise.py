@@ -1,4 +1,4 @@
-"""Polygons to height maps: at each cell centre the highest polygon that covers it."""
+"""Polygons to height maps: each cell centre has the height of the highest polygon over it."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -13,23 +13,23 @@ from jaxleas.types.errors import InputError
 
 DEFAULT_RESOLUTION = 0.04
 CLOSING = 0.01
-"""Polygons are grown by this much [m]: contact surfaces are inset by 1 cm a side (generator),
-and without it the seams between tiles and steps would be one-cell cracks of void."""
+"""Length by which polygons are grown [m]: contact surfaces are inset by 1 cm per side (generator),
+and otherwise the seams between tiles and steps would be one-cell cracks of void."""
 BLOCK = 64
-"""Polygons are cut into blocks of at most this many cells a side, so that memory stays small."""
+"""Largest side of the blocks into which polygons are cut, to save memory [cells]."""
 BATCH_CELLS, BATCH_POLYGONS = 1_000_000, 200_000
 
 
 def rasterise(
     scene: Scene, resolution: float = DEFAULT_RESOLUTION, margin: float = 0.5
 ) -> HeightMap:
-    """Return the height map of a scene: of what feet may touch, and of obstacles.
+    """Return the height map of the surfaces that feet may touch and of the obstacles in a scene.
 
     Vertical faces, and surfaces for palms alone, are skipped. Cell edges lie at multiples of the
     resolution.
 
     Args:
-        scene: what to rasterise.
+        scene: scene to rasterise.
         resolution: edge of a cell [m].
         margin: width of void around the scene [m].
 
@@ -85,7 +85,7 @@ class _Planes(NamedTuple):
 
 
 def _pad(polygons: Sequence[np.ndarray] | np.ndarray) -> Float[np.ndarray, "N V 3"]:
-    """Repeat last vertices until all have as many: an edge of length 0 excludes nothing."""
+    """Repeat last vertices until all polygons have as many; an edge of length 0 has no effect."""
     if isinstance(polygons, np.ndarray):
         return polygons.astype(np.float64, copy=False)
     most = max(len(vertices) for vertices in polygons)
@@ -113,7 +113,7 @@ def _planes(
     slope = -area[:, :2] / area[:, 2:] * resolution
     anchor = polygons.mean(axis=1)
     anchor_cell = (anchor[:, :2] - origin) / resolution
-    # 1e-6 cells: neighbours that share an edge must leave no cell to rounding between them
+    # 1e-6 cells, so that rounding leaves no cell between neighbours that share an edge
     reach = grow / resolution + 1e-6
     return _Planes(
         normal=normal,

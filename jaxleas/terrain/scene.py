@@ -1,4 +1,4 @@
-"""Scenes: convex contact surfaces, obstacles and named areas; what height maps are made from."""
+"""Scenes: convex contact surfaces, obstacles and named areas, from which height maps are made."""
 
 import difflib
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ VERSION = 1
 MAX_CORNERS = 10_000_000
 KNOWN_KEYS = ("version", "surfaces", "obstacles", "areas", "touch")
 Touch = Literal["feet", "palms", "both"]
-"""Who may touch a surface."""
+"""Kinds of effectors that may touch a surface."""
 Polygons = dict[str, Float[np.ndarray, "V 3"]]
 
 
@@ -39,9 +39,9 @@ class Scene:
         obstacles: convex planar polygons that must not be touched: tops as above, side faces
             vertical and wound outwards; box "obstacle_7" has the faces "obstacle_7_top" and
             "obstacle_7_side_0" to "obstacle_7_side_3" [m].
-        areas: named polygons for starts and goals, 2 or 3 coordinates a vertex [m].
-        touch: who may touch a surface, by its name; of surfaces that are not named here, those flat
-            enough for feet are for both, all others for palms.
+        areas: named polygons for starts and goals, with 2 or 3 coordinates per vertex [m].
+        touch: kind of effector that may touch a surface, by the surface's name; unnamed surfaces
+            are for both if they are flat enough for feet, else for palms.
     """
 
     surfaces: Polygons
@@ -50,7 +50,7 @@ class Scene:
     touch: Mapping[str, Touch] = field(default_factory=dict)
 
     def who_touches(self, surface: str) -> Touch:
-        """Return who may touch a surface."""
+        """Return the kind of effector that may touch a surface."""
         if surface in self.touch:
             return self.touch[surface]
         return "both" if upwardness(self.surfaces[surface]) >= STANDING_SLOPE else "palms"
@@ -82,7 +82,7 @@ def read_scene(path: str | Path) -> Scene:
     """Read a scene from JSON: `surfaces`, optionally `obstacles`, `areas`, `touch` and `version`.
 
     Raises:
-        InputError: the file, or one polygon in it (named), cannot be used.
+        InputError: the file cannot be used, or one polygon in it, which the message names.
     """
     content = read_json(path)
     if not isinstance(content, dict) or "surfaces" not in content:
@@ -115,7 +115,7 @@ def write_scene(path: str | Path, scene: Scene) -> None:
 
 
 def require_valid(scene: Scene, where: str | Path) -> None:
-    """Refuse a scene with a polygon that is not planar and convex, or that cannot be touched so."""
+    """Refuse a scene with a polygon that is not planar and convex, or has an impossible `touch`."""
     for name, vertices in scene.surfaces.items():
         require_any_orientation(vertices, f"{where}: surface '{name}'")
         if scene.touch.get(name, "palms") != "palms" and upwardness(vertices) <= VERTICAL_SLOPE:
@@ -131,7 +131,7 @@ def require_valid(scene: Scene, where: str | Path) -> None:
 
 
 def _nowhere(scene: Scene, path: str | Path) -> str:
-    """Return why feet can stand nowhere, by the first surface."""
+    """Return the reason why feet can stand nowhere, from the first surface."""
     name, vertices = next(iter(scene.surfaces.items()))
     if name in scene.touch:
         return f"{path} has no surface that feet may touch: touch says 'palms' of all"
@@ -169,7 +169,7 @@ def _polygons(
     if not isinstance(group, dict):
         raise InputError(f"{path}: '{key}' must be an object of name: [[x, y, z], ...]")
     polygons = {name: _polygon(path, key, name, each, dimensions) for name, each in group.items()}
-    # They are laid out as one array, as wide as the widest (terrain/rasterise.py).
+    # They become one array, padded to the largest polygon (terrain/rasterise.py).
     corners = len(polygons) * max((len(each) for each in polygons.values()), default=0)
     if corners > MAX_CORNERS:
         raise InputError(

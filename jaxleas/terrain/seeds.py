@@ -1,6 +1,6 @@
-"""Which seeds may draw which terrain: training never sees what it is judged on."""
+"""Ranges of seeds for terrain: training never sees the terrain of evaluation."""
 
-# Four ranges of seeds that never meet. A training configuration is refused a first seed beyond
+# Four disjoint ranges of seeds. A training configuration is refused a first seed beyond
 # its range; held-out terrain (checkpoint choice), tuning terrain (named scenarios, judged again and
 # again while a policy is refined) and evaluation terrain (reported numbers) differ too, so that no
 # choice can leak into the number that is reported for it.

@@ -1,6 +1,6 @@
-"""Tiles: one function a kind, each returning the polygons that fill one cell of the grid.
+"""Tiles: one function per kind, which returns the polygons that fill one cell of the grid.
 
-Every function draws in a frame of its own: s runs along the tile's direction from the entry edge
+Every function draws in its tile's frame: s runs along the tile's direction from the entry edge
 (s = 0) to the exit edge (s = size), t across it to the left, in [-size/2, size/2].
 """
 
@@ -15,11 +15,11 @@ from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.polygons import box_faces
 
 Rectangle = tuple[float, float, float, float]
-"""s_min, s_max, t_min, t_max [m]."""
+"""Rectangle s_min, s_max, t_min, t_max [m]."""
 
 
 class TileKind(StrEnum):
-    """What a cell of the grid holds; Flat and Obstacles are initial, the others transitions."""
+    """Kinds of tiles; Flat and Obstacles are initial, the others transitions."""
 
     FLAT = "flat"
     OBSTACLES = "obstacles"
@@ -38,13 +38,13 @@ class TileKind(StrEnum):
 
 @dataclass(frozen=True)
 class TileFrame:
-    """Where a tile lies.
+    """The frame of a tile in the world.
 
     Attributes:
         entry: x, y of the middle of the entry edge [m].
         direction: unit vector from the entry to the exit edge, along an axis of the world.
         size: edge of the tile [m].
-        inset: by which rectangles are shrunk a side [m].
+        inset: length by which rectangles are shrunk on each side [m].
     """
 
     entry: tuple[float, float]
@@ -61,7 +61,7 @@ class TileFrame:
 
 @dataclass(frozen=True)
 class TilePolygons:
-    """The polygons of a tile, and how hard it is (see `links.Link.difficulty`)."""
+    """The polygons of a tile, and its difficulty (see `links.Link.difficulty`)."""
 
     surfaces: list[Float[np.ndarray, "V 3"]] = field(default_factory=list)
     boxes: list[dict[str, Float[np.ndarray, "4 3"]]] = field(default_factory=list)
@@ -77,7 +77,7 @@ def flat_tile(frame: TileFrame, height: float) -> TilePolygons:
 def obstacle_tile(
     frame: TileFrame, height: float, config: GeneratorConfig, rng: np.random.Generator
 ) -> TilePolygons:
-    """Return a flat tile with upright boxes, each in a quarter of its own off the centre."""
+    """Return a flat tile with upright boxes, each in a different quarter, off the centre."""
     quarters = rng.permutation([(1, 1), (-1, 1), (-1, -1), (1, -1)])[: config.obstacles.count]
     boxes = [_box(frame, height, config, rng, quarter) for quarter in quarters]
     return TilePolygons(flat_tile(frame, height).surfaces, boxes, difficulty=float(len(boxes)))
@@ -138,8 +138,8 @@ def stairs_tile(
     The source gives depth and width of a step; the riser follows from the climb and the number
     of steps, n steps between two tiles making n + 1 risers, as in the author's arenas. Mostly the
     steps fill the tile (5 to 10 steps). With `landing_probability` they are fewer, so higher, as
-    far as `riser_max` lets them, and level landings fill the rest of the tile: risers from 0.04
-    to 0.2 m are met in training. `riser_max` always wins over the number of steps.
+    far as `riser_max` allows, and level landings fill the rest of the tile: risers from 0.04 to
+    0.2 m occur in training. `riser_max` always takes precedence over the number of steps.
     """
     climb, depth = heights[1] - heights[0], config.stairs.depth
     most = max(1, int(frame.size / depth[0] + 1e-9))
@@ -199,7 +199,7 @@ def wall_tile(
     half, width = 0.5 * frame.size, rng.uniform(*config.detour.width)
     low, high = (-half, width - half) if rng.random() < 0.5 else (half - width, half)
     thickness = min(rng.uniform(*config.detour.thickness), frame.size)
-    # Close to one end: right before the robot that comes from there, far from one that comes back.
+    # Close to one end: right in front of a robot from that end, far from one that comes back.
     begin = rng.uniform(0.0, min(0.5, frame.size - thickness))
     corners = frame.world(_corners((begin, begin + thickness, low, high), 0.0))
     box = box_faces(corners, heights[0], heights[0] + rng.uniform(*config.detour.height))
@@ -210,9 +210,9 @@ def wall_tile(
 def split(
     rng: np.random.Generator, total: float, count: int, interval: tuple[float, float]
 ) -> Float[np.ndarray, " count"]:
-    """Return `count` random lengths that sum to `total`, each in the interval if that can be.
+    """Return `count` random lengths that sum to `total`, each in the interval if possible.
 
-    Drawn lengths are scaled to the total, then drawn towards equal ones until all fit.
+    Random lengths are scaled to the total, then moved towards equal ones until all fit.
     """
     drawn = rng.uniform(*interval, size=count)
     spread = drawn * (total / drawn.sum()) - total / count

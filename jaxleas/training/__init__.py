@@ -1,1 +1,1 @@
-"""Training: networks, PPO over Brax, run folders, checkpoints and resume."""
+"""Training: networks, PPO for any task, checkpoints and resume."""

@@ -1,7 +1,7 @@
-"""Adam over one vector, with all that is one number a step computed once.
+"""Adam over one vector, in which each number per step is computed only once.
 
-State and result are those of `train_state.make_optimiser`'s. Written out, as XLA:CPU computes a
-number that it finds in a formula over the weights anew for each of them.
+State and result are those of the optimiser that `train_state.make_optimiser` returns. It is written
+out because XLA:CPU recomputes a number in a formula over the weights for each of them.
 """
 
 from typing import Any
@@ -26,11 +26,11 @@ def descend(
     """Return what to add to the weights, the optimiser's next state and the gradient's norm.
 
     Args:
-        gradient: of all weights, in one vector.
-        state: of the optimiser.
-        learning_rate: of the number of steps done.
-        max_norm: longer gradients are shortened to it.
-        always: true, and not known to the compiler (`compute_once`).
+        gradient: gradient with respect to all weights, as one vector.
+        state: state of the optimiser.
+        learning_rate: function from the number of steps done to the learning rate.
+        max_norm: norm to which longer gradients are shortened.
+        always: value that is true, which the compiler does not know (`compute_once`).
     """
     clipping, (moments, schedule) = state
     count = optax.safe_increment(moments.count)

@@ -10,10 +10,10 @@ from jaxtyping import Float
 
 @dataclass(frozen=True)
 class Average:
-    """Averages of what every device computed from as many robots of its own.
+    """Averages of what every device computed from an equal share of the robots.
 
     Attributes:
-        axis: along which the devices lie; None: there is one.
+        axis: name of the axis along which the devices lie; None: there is only one device.
     """
 
     axis: str | None = None
@@ -23,7 +23,7 @@ class Average:
         return each if self.axis is None else jax.lax.pmean(each, self.axis)
 
     def standardised(self, values: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-        """Return values less their mean, over their standard deviation."""
+        """Return the values minus their mean, divided by their standard deviation."""
         mean, variance = jnp.mean(values), jnp.var(values)
         if self.axis is not None:
             whole, square, within = self.mean(jnp.stack([mean, mean * mean, variance]))
@@ -31,7 +31,7 @@ class Average:
         return (values - mean) / (jnp.sqrt(variance) + 1e-8)
 
     def metrics(self, metrics: dict[str, Array]) -> dict[str, Array]:
-        """Return metrics of all robots: those called max or min are the largest and smallest."""
+        """Return metrics of all robots: maxima and minima of those named max or min, else means."""
         if self.axis is None:
             return metrics
         names = sorted(metrics)

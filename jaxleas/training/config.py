@@ -18,7 +18,7 @@ class MapsConfig(Strict):
     kernels: Annotated[tuple[Count, ...], Field(min_length=1, max_length=16)] = (5, 3, 3)
     """Side of each convolution's kernel."""
     latent: Count = 64
-    """Numbers that a map becomes."""
+    """Length of the vector into which a map is encoded."""
 
     @model_validator(mode="after")
     def _as_many(self) -> Self:
@@ -43,13 +43,13 @@ class NetworkConfig(Strict):
     normaliser: Literal["affine", "running"] = "affine"
     """`affine`: fixed, from the observation's bounds; `running`: Brax's running statistics."""
     products: Literal["float32", "bfloat16", "auto"] = "float32"
-    """In what numbers training multiplies matrices and keeps what lies between layers: `auto` is
-    `bfloat16` where the device has units for it (GPUs, processors with AMX), `float32` elsewhere.
-    Weights, sums, and what is judged and exported are float32 all the same."""
+    """Number type in which training multiplies matrices and keeps values between layers: `auto`
+    is `bfloat16` where the device has units for it (GPUs, processors with AMX), else `float32`.
+    Weights, sums, and what is judged and exported are always float32."""
 
     @property
     def product_type(self) -> Literal["float32", "bfloat16"]:
-        """In what numbers this machine multiplies."""
+        """Number type in which this machine multiplies."""
         if self.products != "auto":
             return self.products
         from jaxleas.xla.matrix_units import native_products  # asks JAX for its devices
@@ -63,14 +63,14 @@ class PpoConfig(Strict):
     steps: Count = 6_000_000
     """Environment steps of the whole training."""
     environments: Count = 2048
-    """Robots that walk at once."""
+    """Robots that walk at the same time."""
     unroll: Count = 20
     """Steps each robot takes between two policy updates."""
     minibatches: Count = 16
     epochs: Count = 4
     """Passes over each batch."""
     learning_rate: Positive = 5e-4
-    """At the start; it falls linearly (T sec. 3.4)."""
+    """Learning rate at the start; it falls linearly (T sec. 3.4)."""
     final_learning_rate: NonNegative = 1e-5
     discount: Fraction = 0.99
     """gamma: about 100 steps, 2 m, of foresight. The thesis's 0.97 sees 66 cm: too little for a
@@ -116,23 +116,23 @@ class HeldOutConfig(Strict):
     starts: Count = 1024
     arenas: Count = 16
     steps: Count = 500
-    """A start that has not reached its goal by then has failed."""
+    """Time limit [steps]: a start that has not reached its goal by then has failed."""
 
 
 class CheckpointsConfig(Strict):
     """Which of the states written at every examination are kept."""
 
     keep_last: Count = 2
-    """The newest; the best by held-out success is always kept, too."""
+    """Number of newest checkpoints to keep; the best by held-out success is always kept, too."""
 
 
 class FinalConfig(Strict):
-    """What follows training: the verdict, the artifacts and the report."""
+    """What follows training: the evaluation, the artifacts and the report."""
 
     evaluate: bool = True
     """Judge the best policy on the evaluation suites, export it and write the report."""
     starts: Count = 1000
-    """Starts a cell of the transitions suite."""
+    """Starts per cell of the transitions suite."""
 
 
 Env = TypeVar("Env", bound=TaskConfig)
@@ -140,13 +140,13 @@ Worlds = TypeVar("Worlds", bound=WorldsConfig)
 
 
 class RunConfig(Strict, Generic[Env, Worlds]):
-    """One experiment; `RunConfig[task.Config, task.Worlds]` is one of a task."""
+    """One experiment; `RunConfig[task.Config, task.Worlds]` is that of one task."""
 
     seed: Seed = 0
-    """Of everything random in training except the terrain."""
+    """Seed of everything random in training except the terrain."""
     watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
-    """Who is shown the metrics, besides metrics.jsonl; wandb and mlflow are extras."""
-    # A section that is left out is one of defaults, of whatever type the task's sections are.
+    """Watchers that receive the metrics, besides metrics.jsonl; wandb and mlflow are extras."""
+    # A section that is left out takes its defaults, of the type that the task prescribes.
     terrain: Worlds = Field(default_factory=dict, validate_default=True)  # type: ignore[assignment]
     env: Env = Field(default_factory=dict, validate_default=True)  # type: ignore[assignment]
     network: NetworkConfig = NetworkConfig()
@@ -157,5 +157,5 @@ class RunConfig(Strict, Generic[Env, Worlds]):
 
     @classmethod
     def former_names(cls) -> Mapping[str, str]:
-        """Return the fields that the task's files may still call otherwise."""
+        """Return the former names of fields, which the task's files may still use."""
         return getattr(cls.model_fields["env"].annotation, "moved", {})

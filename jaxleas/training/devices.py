@@ -1,7 +1,7 @@
-"""The devices that share a training: robots are divided among them, everything else is on each.
+"""The devices that share a training: robots are divided among them, the rest is on each.
 
-One program over global arrays (`jax.jit` with shardings): what it computes does not depend on how
-many devices there are, but for the order in which sums over robots are rounded.
+One program over global arrays (`jax.jit` with shardings): what it computes does not depend on the
+number of devices, except for the order in which sums over robots are rounded.
 """
 
 import dataclasses
@@ -20,7 +20,7 @@ from jaxleas.types import InputError
 
 Tree = TypeVar("Tree")
 AXIS = "robots"
-DIVIDED = ("episode", "observation")  # fields of the train state with one entry a robot
+DIVIDED = ("episode", "observation")  # fields of the train state with one entry per robot
 
 
 @dataclass(frozen=True)
@@ -44,23 +44,23 @@ class Devices:
 
     @property
     def whole(self) -> NamedSharding:
-        """Of arrays that every device holds: terrain, parameters, metrics."""
+        """Sharding of arrays that every device holds whole: terrain, parameters, metrics."""
         return NamedSharding(self.mesh, PartitionSpec())
 
     @property
     def divided(self) -> NamedSharding:
-        """Of arrays with one entry a robot, along their first axis."""
+        """Sharding of arrays with one entry per robot along their first axis."""
         return NamedSharding(self.mesh, PartitionSpec(AXIS))
 
     @property
     def state(self) -> TrainState:
-        """How a train state lies: a sharding for each of its fields."""
+        """Layout of a train state: a sharding for each of its fields."""
         names = [field.name for field in dataclasses.fields(TrainState)]
         layout: Any = {name: self.divided if name in DIVIDED else self.whole for name in names}
         return TrainState(**layout)
 
     def divide(self, robots: Tree) -> Tree:
-        """Lay arrays with one entry a robot out over the devices, where they can be divided."""
+        """Lay arrays with one entry per robot out over the devices, where they can be divided."""
         count = len(jax.tree.leaves(robots)[0])
         if len(self) == 1 or count % len(self):
             return robots
@@ -71,13 +71,13 @@ class Devices:
     ) -> Callable[..., Any]:
         """Return a function that every device computes for its own robots.
 
-        Left to the compiler each minibatch is gathered on every device, and each of the gradient's
-        arrays summed by itself.
+        Left to itself, the compiler gathers each minibatch on every device and sums each array of
+        the gradient separately.
 
         Args:
-            function: must return the same on each device.
-            robot_axes: of each argument the axis along which its arrays have one entry a robot or
-                group of robots; None: every device has the whole.
+            function: function that returns the same on each device.
+            robot_axes: for each argument, the axis along which its arrays have one entry per robot
+                or group of robots; None: every device has the whole argument.
         """
         specs = tuple(
             PartitionSpec() if axis is None else PartitionSpec(*(None,) * axis, AXIS)
@@ -91,8 +91,8 @@ class Devices:
         """Return a state laid out over the devices; all processes must call it.
 
         Args:
-            state: process 0's, as read from a checkpoint; the others give its shapes alone
-                (`jax.eval_shape`'s).
+            state: state of process 0, as read from a checkpoint; the other processes pass only its
+                shapes (from `jax.eval_shape`).
         """
 
         if not self.mesh.is_multi_process:
@@ -121,12 +121,12 @@ def choose_devices(count: int | Literal["all"], ppo: PpoConfig) -> Devices:
     """Return the devices to train on.
 
     Args:
-        count: how many of JAX's devices, those of all processes together; `"all"` of them.
-        ppo: whose robots they share.
+        count: number of JAX's devices, counted over all processes; `"all"`: all of them.
+        ppo: configuration of PPO, whose robots the devices share.
 
     Raises:
-        InputError: there are not so many, they do not divide the robots of a minibatch, or a
-            process would be left without.
+        InputError: there are fewer devices, they do not divide the robots of a minibatch, or a
+            process would have none.
     """
     there = jax.devices()
     wanted = len(there) if count == "all" else count
@@ -147,9 +147,9 @@ def one_device() -> Devices:
 
 
 def _from_first(leaf: Any) -> np.ndarray:
-    """Return process 0's array, of a random key its words, on every process.
+    """Return process 0's array on every process; for a random key, its words.
 
-    The others give its shape alone.
+    The other processes pass only its shape.
     """
     from jax.experimental.multihost_utils import broadcast_one_to_all
 
@@ -166,8 +166,9 @@ def _require_even(count: int, ppo: PpoConfig) -> None:
         fitting = [number for number in range(1, count) if robots % number == 0]
         raise InputError(
             f"{count} devices cannot share the robots evenly: ppo.environments ="
-            f" {ppo.environments} in ppo.minibatches = {ppo.minibatches} are {robots} a minibatch,"
-            f" no multiple of {count}; --devices {fitting[-1]} would do, or other numbers of these"
+            f" {ppo.environments} in ppo.minibatches = {ppo.minibatches} are {robots} per"
+            f" minibatch, no multiple of {count}; --devices {fitting[-1]} would do, or other"
+            " numbers of these"
         )
 
 

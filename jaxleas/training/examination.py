@@ -1,4 +1,4 @@
-"""The small examination during training: how many held-out starts does the policy bring home?"""
+"""The small examination during training: how many held-out starts reach their goal?"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.walkers.host import look
 
-# Of the examination's own draws: the same starts at every examination of every run.
+# Seed of the examination's own draws: the same starts at every examination of every run.
 EXAMINATION_KEY = 20_210_530
 REACHED = "held_out/reached"
 Examine = Callable[[Any, Any, Any], dict[str, Any]]
@@ -32,14 +32,15 @@ def make_examination(
 ) -> Examine:
     """Return the examination: (held-out world, normaliser, policy) -> fractions of starts.
 
-    Every robot walks, by the policy's mode, until it reaches its goal, fails, or the time is up;
-    all stop early when none walks any more. It is pure; jit it. `HostExaminer` is its twin.
+    Every robot walks, by the policy's mode, until it reaches its goal, fails, or runs out of time;
+    the loop ends early when no robot walks any more. It is pure; jit it. `HostExaminer` is its
+    twin.
 
     Args:
         config: configuration of the run.
         task: task that steps on the device.
         networks: actor and critic.
-        divide: lays arrays with one entry a robot out over several devices.
+        divide: function that lays arrays with one entry per robot out over several devices.
     """
     examination = task.examination(config.held_out)
     weights = task.weights(PpoParams.of(config).task, 0.0)
@@ -126,7 +127,7 @@ class HostExaminer:
 def _fractions(
     examination: Examination, groups: tuple[str, ...], reached: Any, failed: Any, group: Any
 ) -> dict[str, Any]:
-    """Return the fractions of all starts, and of each cell that is told apart."""
+    """Return the fractions of all starts, and those of each cell that is reported separately."""
     found = {
         REACHED: reached.mean(),
         "held_out/invalid": failed.mean(),

@@ -1,4 +1,4 @@
-"""The optimisation: passes over what was walked, a minibatch of robots at a time."""
+"""The optimisation: passes over the experience, one minibatch of robots at a time."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -32,11 +32,11 @@ def make_learn(
     Args:
         config: configuration of the run.
         networks: actor and critic.
-        devices: devices that share it: each learns from its own robots, gradients are averaged.
+        devices: devices that share it: each learns from its own robots; gradients are averaged.
 
     Returns:
-        A function of the state after walking, the normaliser, what was walked, what was seen after
-        the last step, the hyperparameters and a key.
+        A function of the state after walking, the normaliser, the experience, the observation
+        after the last step, the hyperparameters and a key.
     """
     ppo, signature = config.ppo, networks.signature
     mirror = ppo.mirror and signature.symmetric
@@ -88,7 +88,7 @@ def make_learn(
             return params, moments, average.metrics(metrics)
 
         order, flip, noise = draw_minibatches(ppo, signature.heads, mirror, key)
-        always = state.update >= 0  # the compiler does not know
+        always = state.update >= 0  # true, but the compiler does not know
         robot_axes = (None, None, None, None, 1, 0, 1, 1, 2)
         together = share(descend_all, robot_axes) if share else descend_all
         params, moments, metrics = together(
@@ -114,11 +114,11 @@ def draw_minibatches(
     """Draw which robots make up each minibatch, which of them are mirrored, and normal noise.
 
     A minibatch has one robot of each group of `ppo.minibatches` neighbours, so that devices which
-    have whole groups have their share of each. Drawn by robot, not by sample: sorting and
+    hold whole groups have their share of each. Robots are drawn, not samples: sorting and
     gathering whole batches is slow.
 
     Args:
-        ppo: numbers of robots, minibatches and epochs.
+        ppo: configuration of PPO: numbers of robots, minibatches and epochs.
         heads: heads of the action, whose entropies are estimated.
         mirror: whether half of the robots are mirrored.
         key: randomness for all of it, consumed here.
@@ -146,21 +146,21 @@ def mirror_images(
     last_observation: Float[Array, "robots size"],
     mirror: bool = True,
 ) -> tuple[Experience, Float[Array, "1 images robots size"]]:
-    """Return what was walked and its mirror image, left and right swapped.
+    """Return the experience and its mirror image, left and right swapped.
 
-    The task is symmetric, so a mirrored step is as good as a walked one; its probability under the
-    old policy is taken to be the original's, exact once the policy is symmetric. Mirrored once an
-    update: a minibatch then takes whole rows.
+    The task is symmetric, so a mirrored step is as good as one that was walked; its probability
+    under the old policy is taken to be the original's, which is exact once the policy is symmetric.
+    Mirroring is done once per update: a minibatch then takes whole rows.
 
     Args:
-        signature: parts and heads, which know their mirrors.
+        signature: parts and heads, with their mirrors.
         batch: experience of all robots.
-        last_observation: of all robots, after the last step.
-        mirror: whether there is to be an image.
+        last_observation: observation of all robots after the last step.
+        mirror: whether to add the mirror image.
 
     Returns:
-        The batch [time, images, robots, ...], as walked and then mirrored, and what the robots see
-        in the end with an axis of time, too: of one step.
+        The batch [time, images, robots, ...], as walked and then mirrored, and the last
+        observation, also with a time axis (of length one).
     """
     if not mirror:
         return jax.tree.map(lambda leaf: leaf[:, None], (batch, last_observation[None]))
@@ -203,21 +203,21 @@ def take_robots(
 
     Args:
         images: experience of all robots, as walked and mirrored.
-        last_observation: of all robots, after the last step, likewise.
-        chosen: the robots to take.
-        flip: which of them are mirrored.
-        always: true, and not known to the compiler.
+        last_observation: observation of all robots after the last step, likewise.
+        chosen: indices of the robots to take.
+        flip: whether each of them is mirrored.
+        always: value that is true, which the compiler does not know.
     """
     rows = flip.astype(jnp.int32) * images.reward.shape[2] + chosen
 
     def take(leaf: Array) -> Array:
-        # Row by row: all steps of a robot at once come out with the robots first, to be turned.
+        # Row by row: all steps of a robot at once would come out with the robots first.
         time, count, robots, *rest = leaf.shape
         flat = leaf.reshape(time * count * robots, *rest)
         begin = jnp.arange(time, dtype=jnp.int32)[:, None] * (count * robots)
         return flat.at[begin + rows].get(mode="promise_in_bounds")
 
-    # Observations apart: the products of the first layers want them as they are and turned round.
+    # Observations separately: the first layers' products need them both as they are and transposed.
     seen = compute_once(take, always, images.observation)
     rest = replace(images, observation=images.reward)
     return replace(jax.tree.map(take, rest), observation=seen), take(last_observation)

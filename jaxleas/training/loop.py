@@ -26,8 +26,8 @@ from jaxleas.training.trainer import Trainer
 from jaxleas.types import InputError, JaxleasError
 
 POLICY_FILE = "policy.npz"
-# Updates that the devices have before them: cores that share a program hang in XLA:CPU with more
-# than some thirty of its runs to come.
+# Updates that may be queued on the devices: in XLA:CPU, cores that share a program hang with more
+# than about thirty queued runs of it.
 MOST_AHEAD = 8
 _LOG = logging.getLogger("jaxleas")
 
@@ -60,12 +60,13 @@ def train(
     Args:
         config: configuration of the run.
         run: folder held for writing.
-        task: what is learned, in place of what the configuration asks for.
+        task: task that is learned, in place of the one that the configuration names.
         devices: devices that share the training; by default the first.
-        learned: networks to begin with, in place of fresh ones; a resumed run has its own.
-        on_examined: called when an examination's rows are in the run folder, its checkpoint on its
-            way; what it raises ends the training, and the folder can be resumed.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        learned: networks to begin with, in place of fresh ones; a resumed run continues its own.
+        on_examined: function that is called when an examination's rows are in the run folder and
+            its checkpoint is being written; an exception that it raises ends the training, and the
+            folder can be resumed.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Returns:
         The best policy by held-out success, as in the folder's `policy.npz`.
@@ -94,8 +95,10 @@ def train(
         Interruption() as interruption,
         Background() as background,
     ):
-        desk = _Desk(trainer, run, checkpoints, log, progress, background, best, on_examined)
-        _Session(trainer, interruption, desk).go_on(state)
+        recorder = _Recorder(
+            trainer, run, checkpoints, log, progress, background, best, on_examined
+        )
+        _Session(trainer, interruption, recorder).run(state)
     return read_policy(run.path / POLICY_FILE, of=type(config.env))
 
 
@@ -105,7 +108,7 @@ def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> 
     Args:
         config: configuration of the run.
         devices: devices of all processes.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
         NonFiniteError: a number became infinite or NaN.
@@ -114,13 +117,13 @@ def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> 
     trainer = Trainer(config, make_task(config, allow), devices)
     _, state, _ = _first_state(trainer, None)
     with Interruption() as interruption:
-        _Session(trainer, interruption, None).go_on(state)
+        _Session(trainer, interruption, None).run(state)
 
 
 def _first_state(
     trainer: Trainer, checkpoints: Checkpoints | None, learned: Learned | None = None
 ) -> tuple[int, TrainState, float]:
-    """Return step, state and best score to go on from: the newest checkpoint's, or fresh ones.
+    """Return step, state and best score to continue from: the newest checkpoint's, or fresh ones.
 
     Only process 0 has checkpoints; the other processes get its state.
     """
@@ -146,7 +149,7 @@ def _first_state(
 
 
 def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:
-    """Return the newest state, or None where nothing but the very first was there and is lost."""
+    """Return the newest state; None if only the very first was written, and it is lost."""
     try:
         return checkpoints.latest(like)
     except NoCheckpointError as error:
@@ -157,9 +160,9 @@ def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState
 
 
 def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, best: float) -> float:
-    """Make `policy.npz` again from the best checkpoint where it was damaged; return its score."""
+    """Make a damaged `policy.npz` again from the best checkpoint; return its score."""
     if best < 0.0:
-        return best  # none was written yet
+        return best  # no policy was written yet
     try:
         read_policy(run.path / POLICY_FILE, of=type(trainer.config.env))
     except InputError as damage:
@@ -175,13 +178,13 @@ def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, bes
 
 @dataclass
 class _Session:
-    """One sitting of a run: from a state to the end, or to an interruption."""
+    """One session of a run: from a state to the end, or to an interruption."""
 
     trainer: Trainer
     interruption: Interruption
-    desk: "_Desk | None"
+    recorder: "_Recorder | None"
 
-    def go_on(self, state: TrainState) -> None:
+    def run(self, state: TrainState) -> None:
         config = self.trainer.config
         alone = jax.process_count() == 1
         done = int(state.update)
@@ -198,16 +201,16 @@ class _Session:
                 # The only point where the host waits for the newest update.
                 rows = self._check(pending)
                 pending = []
-                verdict = self._examine(state) if due else {}
+                fractions = self._examine(state) if due else {}
                 kept = self.trainer.gather(state)
-                if self.desk is not None:
-                    self.desk.record(rows, verdict)
-                    self.desk.save(kept, done, verdict)
+                if self.recorder is not None:
+                    self.recorder.record(rows, fractions)
+                    self.recorder.save(kept, done, fractions)
                 if any_process(self.interruption.requested) and done < config.ppo.updates:
                     raise InterruptedRunError(self._farewell(done))
 
     def _farewell(self, done: int) -> str:
-        where = "RUN" if self.desk is None else self.desk.run.path
+        where = "RUN" if self.recorder is None else self.recorder.run.path
         return (
             f"interrupted after {done} of {self.trainer.config.ppo.updates} updates; all is saved:"
             f" resume with  python train.py --resume {where}"
@@ -222,7 +225,9 @@ class _Session:
                 where = ", ".join(name.removeprefix("finite/") for name in bad)
                 step = update * self.trainer.config.ppo.batch
                 folder = (
-                    "process 0's run folder" if self.desk is None else self.desk.run.checkpoints
+                    "process 0's run folder"
+                    if self.recorder is None
+                    else self.recorder.run.checkpoints
                 )
                 raise NonFiniteError(
                     f"update {update} (step {step}) made non-finite numbers in: {where}; the last"
@@ -232,13 +237,13 @@ class _Session:
         return rows
 
     def _examine(self, state: TrainState) -> dict[str, float]:
-        verdict = self.trainer.examine(self.trainer.held_out, state.normaliser, state.averaged)
-        return {name: float(value) for name, value in verdict.items()}
+        fractions = self.trainer.examine(self.trainer.held_out, state.normaliser, state.averaged)
+        return {name: float(value) for name, value in fractions.items()}
 
 
 @dataclass
-class _Desk:
-    """Where process 0 writes down what all have computed."""
+class _Recorder:
+    """Writer of what all processes have computed, on process 0."""
 
     trainer: Trainer
     run: RunFolder
@@ -249,24 +254,24 @@ class _Desk:
     best: float
     on_examined: Callable[[], None]
 
-    def record(self, rows: list[tuple[int, dict]], verdict: dict[str, float]) -> None:
+    def record(self, rows: list[tuple[int, dict]], fractions: dict[str, float]) -> None:
         batch = self.trainer.config.ppo.batch
         for update, metrics in rows:
             numbers = {
                 name: float(value) for name, value in metrics.items() if "finite/" not in name
             }
             last = update == rows[-1][0]
-            self.log.append(update * batch, numbers | (verdict if last else {}))
-        shown = {"return": f"{float(rows[-1][1]['walk/reward']):.3f} a step"}
-        if verdict:
-            shown["held out"] = f"{100 * verdict['held_out/reached']:.1f} %"
+            self.log.append(update * batch, numbers | (fractions if last else {}))
+        shown = {"return": f"{float(rows[-1][1]['walk/reward']):.3f} per step"}
+        if fractions:
+            shown["held out"] = f"{100 * fractions['held_out/reached']:.1f} %"
         self.progress.update(rows[-1][0] * batch, shown)
 
-    def save(self, state: TrainState, done: int, verdict: dict[str, float]) -> None:
-        """Have the state written, and the policy if it is the best; the training need not wait."""
-        score = verdict.get("held_out/reached")
+    def save(self, state: TrainState, done: int, fractions: dict[str, float]) -> None:
+        """Write the state, and the policy if it is the best, while the training continues."""
+        score = fractions.get("held_out/reached")
         policy = None
-        # Of equals the later: its learning rate was smaller and its average longer.
+        # Between equals the later wins: its learning rate was smaller and its average longer.
         if score is not None and score >= self.best:
             self.best = score
             policy = jax.tree.map(np.array, self.trainer.policy(state))
@@ -281,5 +286,5 @@ class _Desk:
             self.checkpoints.write(packed)
 
         self.background.submit(write)
-        if verdict:
+        if fractions:
             self.on_examined()

@@ -20,15 +20,15 @@ from jaxleas.training.networks import ActorCritic
 
 @struct.dataclass
 class Experience:
-    """What was walked, or a minibatch of it.
+    """The experience of a roll-out, or a minibatch of it.
 
     Attributes:
-        observation: before each step [physical units].
+        observation: observation before each step [physical units].
         raw_action: raw action of all heads.
-        distributions: distribution of each head that it was drawn from.
-        reward: for the step.
+        distributions: distribution of each head, from which the raw action was drawn.
+        reward: reward for the step.
         terminated: 1 where the episode failed with this step, else 0.
-        truncated: 1 where it was cut, else 0.
+        truncated: 1 where the episode was cut, else 0.
     """
 
     observation: Float[Array, "time robots size"]
@@ -54,8 +54,8 @@ def advantages(
         values: value of each observation.
         last_value: value of the observation after the last step.
         reward: scaled reward.
-        terminated: 1 where nothing follows.
-        truncated: 1 where what follows was not seen: such steps teach nothing.
+        terminated: 1 where nothing follows, else 0.
+        truncated: 1 where what follows was not seen, else 0: nothing is learned from such steps.
         discount: gamma.
         gae_lambda: lambda.
     """
@@ -68,8 +68,8 @@ def advantages(
     def join(later: tuple[Array, Array], earlier: tuple[Array, Array]) -> tuple[Array, Array]:
         return earlier[0] * later[0], earlier[1] + earlier[0] * later[1]
 
-    # error = delta + decay * next error, for all times in log(time) passes: one after the other
-    # they would be a launch each on a GPU, whose minibatches are done in the time of a few.
+    # error = delta + decay * next error, for all times in log(time) passes: sequentially, each time
+    # would be a launch on a GPU, where a whole minibatch takes no longer than a few launches.
     _, errors = jax.lax.associative_scan(join, (decay, delta), reverse=True)
     targets = errors + values
     following = jnp.concatenate([targets[1:], last_value[None]])
@@ -91,12 +91,12 @@ def ppo_loss(
     Args:
         params: parameters of actor and critic.
         batch: experience with normalised observations.
-        last_observation: after the last step, to bootstrap from; normalised.
+        last_observation: normalised observation after the last step, to bootstrap from.
         noise: standard normal numbers for each head, to sample the entropy with.
-        hyper: numbers discount, gae_lambda, clip, entropy, value_weight and reward_scale.
+        hyper: hyperparameters discount, gae_lambda, clip, entropy, value_weight and reward_scale.
         networks: actor and critic.
-        always: true, and not known to the compiler (`xla.dense`).
-        average: average over the devices that have robots of this minibatch.
+        always: value that is true, which the compiler does not know (`xla.dense`).
+        average: average over the devices that hold robots of this minibatch.
     """
     heads = networks.signature.heads
     now = networks.signature.distributions(

@@ -1,7 +1,7 @@
 """A trained policy by itself: observation in physical units to command in physical units.
 
-This is the value that leaves training: roll-outs, evaluation and export all use it, so what they
-judge and ship is one thing. As a file it is plain arrays and one JSON text (`policy.npz`).
+This is the value that leaves training: roll-outs, evaluation and export all use it, so what is
+judged is what is shipped. As a file it is plain arrays and one JSON text (`policy.npz`).
 """
 
 import json
@@ -37,8 +37,8 @@ class Policy:
         deviation: deviation of the normaliser, likewise.
         params: parameters of the network.
         network: kind and sizes of the network.
-        signature: what it is shown and what it answers.
-        config: configuration of the task it was trained for.
+        signature: observation that the policy is shown, and meaning of its answer.
+        config: configuration of the task that the policy was trained for.
     """
 
     mean: Float[Array, " size"]
@@ -52,7 +52,8 @@ class Policy:
         """Return what the network answers.
 
         Args:
-            observation: what the actor sees, in physical units: by part, or of the only part alone.
+            observation: observation for the actor, in physical units: by part, or that of the only
+                part alone.
         """
         return self.answer_vector(self._as_shown.pack(observation))
 
@@ -67,23 +68,23 @@ class Policy:
         return self.network.plain(self.params, rows)
 
     def action(self, observation: Array | Mapping[str, Array]) -> Any:
-        """Return the action without chance, as the task's `advance` takes it."""
+        """Return the deterministic action, as the task's `advance` takes it."""
         return self.signature.mode(self.answer(observation))
 
     def __call__(self, observation: Array | Mapping[str, Array]) -> Any:
-        """Return the command in physical units: by head, or of the only head alone."""
+        """Return the command in physical units: by head, or that of the only head alone."""
         return self.signature.command(self.action(observation))
 
     @property
     def _as_shown(self) -> Signature:
-        """The signature without the parts that are the critic's alone."""
+        """The signature without the parts for the critic alone."""
         return Signature(self.signature.seen, self.signature.heads)
 
 
 def policy_of(
     networks: ActorCritic, config: TaskConfig, normaliser: Normaliser, params: Any
 ) -> Policy:
-    """Return the policy that an actor's parameters stand for.
+    """Return the policy of an actor's parameters.
 
     Args:
         networks: actor and critic.
@@ -120,9 +121,9 @@ def read_policy(
     """Read a policy.
 
     Args:
-        path: the file.
-        allow: code of the user's own that may be run, each MODULE:CLASS: the policy's task.
-        of: type of the task's configuration, where policies of no other task will do.
+        path: path of the policy file.
+        allow: user's own code that may be run, as MODULE:CLASS: here the policy's task.
+        of: type of the task's configuration, where only policies of that task are accepted.
 
     Raises:
         InputError: the file is not a policy, is damaged, is of another format, or of a task whose
@@ -185,7 +186,7 @@ def _config(
 
 
 def _require_finite(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
-    """Refuse what is no finite number."""
+    """Refuse arrays that are missing or hold numbers that are not finite."""
     for name, array in arrays.items():
         ours = name.startswith(("mean", "deviation", "kernel_", "bias_", "map_"))
         if ours and not (array.dtype.kind == "f" and np.isfinite(array).all()):

@@ -30,9 +30,9 @@ class TrainStep(Protocol):
         """Return the state after one update, and the metrics of that update.
 
         Args:
-            world: what the robots train in.
-            state: before the update.
-            params: hyperparameters; None: the configuration's, as constants of the program.
+            world: world that the robots train in.
+            state: state before the update.
+            params: hyperparameters; None: those of the configuration, as constants of the program.
         """
         ...
 
@@ -49,7 +49,7 @@ def make_train_step(
         devices: devices that share the learning; None: one.
 
     Returns:
-        The train step, on whose arguments alone what it returns depends.
+        The train step, whose result depends on its arguments alone.
     """
     walk = make_walk(config, task, networks)
     update = make_update(config, networks, devices)
@@ -101,7 +101,7 @@ class HostTrainStep:
 def make_update(
     config: RunConfig, networks: ActorCritic, devices: Devices | None = None
 ) -> Callable[..., tuple[TrainState, Metrics]]:
-    """Return the second half of the train step: learn from a batch, whatever walked it.
+    """Return the second half of the train step: learn from a batch, however it was walked.
 
     The ratios of the loss are against the policy that walked, whose distributions are in the
     batch: it need not be the present one.
@@ -113,8 +113,8 @@ def make_update(
 
     Returns:
         A function (state, batch [time, robots], observation after its last step, key,
-        hyperparameters) -> (state after one update, metrics); without hyperparameters the
-        configuration's.
+        hyperparameters) -> (state after one update, metrics); without hyperparameters it uses
+        those of the configuration.
     """
     learn = make_learn(config, networks, devices)
     constants = PpoParams.of(config)
@@ -150,7 +150,7 @@ def make_update(
 
 
 def _average(decay: float, state: TrainState, params: Any) -> Any:
-    """Return the exponential average of the actor, over fewer updates while there are few."""
+    """Return the exponential average of the actor; early in training, over fewer updates."""
     count = state.update.astype(jnp.float32) + 1.0
     decay_now = jnp.minimum(decay, count / (count + 10.0))
     return jax.tree.map(

@@ -1,4 +1,4 @@
-"""The hyperparameters of PPO as a pytree: what members of a population may differ in."""
+"""The hyperparameters of PPO as a pytree: members of a population may differ in them."""
 
 from typing import Any
 
@@ -33,13 +33,13 @@ class PpoParams:
         learning_rate: learning rate of Adam at the start; it falls linearly.
         final_learning_rate: learning rate at the end.
         discount: gamma.
-        gae_lambda: smoothing of the advantages.
+        gae_lambda: smoothing factor of the advantages.
         clip: bound on the change of the probability ratio.
         entropy: weight of the entropy bonus.
         value_weight: weight of the critic's loss.
-        reward_scale: factor of rewards before learning.
-        max_gradient_norm: longer gradients are shortened to it.
-        task: numbers of the task's own, by the dotted names of its `swept` fields.
+        reward_scale: factor by which rewards are multiplied before learning.
+        max_gradient_norm: norm to which longer gradients are shortened.
+        task: hyperparameters of the task, by the dotted names of its `swept` fields.
     """
 
     learning_rate: Any

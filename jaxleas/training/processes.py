@@ -1,7 +1,7 @@
-"""Several processes, on one host or many, that train together: process 0 writes, the others help.
+"""Several processes, on one host or many, that train together; only process 0 writes files.
 
-All run the same program and must meet in the same order: what one of them decides alone (a signal,
-what lies on disk) is agreed upon first.
+All run the same program and must meet in the same order, so they first agree on what only one of
+them knows (a signal, the files on disk).
 """
 
 from collections.abc import Callable
@@ -15,20 +15,20 @@ AUTO = "auto"  # let JAX ask the cluster (Slurm, Open MPI, Kubernetes, TPU pods)
 
 
 def connect(coordinator: str | None, process: str | None) -> None:
-    """Join the other processes of a training; to be called before anything touches a device.
+    """Join the other processes of a training; call this before anything touches a device.
 
     Args:
         coordinator: HOST:PORT of process 0, the same on all; or `auto`, to ask the cluster.
         process: `I/N`: this is process I of N, counted from 0; not with `auto`.
 
     Raises:
-        InputError: these are not understood, or the processes do not find each other.
+        InputError: the arguments are not understood, or the processes do not find each other.
     """
     where, index, count = None, None, None
     if coordinator != AUTO or process is not None:
         where = _parse_coordinator(coordinator)
         index, count = _parse_process(process)
-    # Between CPUs; other devices bring their own way.
+    # Communication between CPUs; other devices bring their own.
     jax.config.update("jax_cpu_collectives_implementation", "gloo")
     try:
         jax.distributed.initialize(where, count, index)
@@ -37,17 +37,17 @@ def connect(coordinator: str | None, process: str | None) -> None:
 
 
 def disconnect() -> None:
-    """Leave the other processes, all together: process 0 may have long work of its own to do."""
+    """Part from the other processes, all at once: process 0 may have long work left to do."""
     jax.distributed.shutdown()
 
 
 def is_first() -> bool:
-    """Tell whether this is process 0, the one that writes; a process alone is."""
+    """Return whether this is process 0, the one that writes; a single process is process 0."""
     return jax.process_index() == 0
 
 
 def any_process(asks: bool) -> bool:
-    """Tell every process whether one of them asks; all must call it."""
+    """Return, on every process, whether any of them asks; all must call it."""
     if jax.process_count() == 1:
         return asks
     from jax.experimental.multihost_utils import process_allgather
@@ -56,10 +56,11 @@ def any_process(asks: bool) -> bool:
 
 
 def from_first(make: Callable[[], str]) -> str:
-    """Return on every process the text that process 0 makes; all must call it.
+    """Return, on every process, the text that process 0 makes; all must call it.
 
     Raises:
-        JaxleasError: process 0 could not make it: there its own error, elsewhere a mention of it.
+        JaxleasError: process 0 could not make it; on process 0 the error itself is raised, on the
+            others one that refers to it.
     """
     if jax.process_count() == 1:
         return make()
@@ -85,7 +86,7 @@ def _parse_process(process: str | None) -> tuple[int, int]:
     if not (slash and index.isdecimal() and count.isdecimal() and int(index) < int(count)):
         given = "is missing" if process is None else f"{process} is not understood"
         raise InputError(
-            f"--process {given}: --process 0/2 beside --coordinator HOST:PORT is the first of two"
+            f"--process {given}: --process 0/2 with --coordinator HOST:PORT is the first of two"
         )
     return int(index), int(count)
 

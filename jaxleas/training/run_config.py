@@ -1,4 +1,4 @@
-"""Reading the configuration of a run: which task it is of decides what its sections hold."""
+"""Reading the configuration of a run: its task determines what its sections hold."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -20,12 +20,12 @@ def load_run_config(
 
     Args:
         path: the YAML file.
-        overrides: arguments such as `--ppo.discount 0.97` (`load_config`).
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        overrides: command-line arguments such as `--ppo.discount 0.97` (`load_config`).
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the file (or the command line), the key, what was
-            given, and what would do.
+        InputError: the configuration is invalid; one sentence names the file (or the command
+            line), the key, what was given, and what would do.
     """
     layers = layers_of(path)
     stated = [("command line", _stated_task(overrides)), *reversed(layers)]
@@ -37,11 +37,11 @@ def parse_run_config(document: Any, source: str, allow: Collection[str] = ()) ->
 
     Args:
         document: mapping of the sections.
-        source: what an error's sentence begins with.
-        allow: code of the user's own that may be run, each MODULE:CLASS.
+        source: name of the document, with which error messages begin.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
-        InputError: one sentence that names the source, the key, and what would do.
+        InputError: the value is invalid; the message names the source, the key, and what would do.
     """
     layers = [(source, document if isinstance(document, dict) else {})]
     return validate(_model(layers, allow), layers)

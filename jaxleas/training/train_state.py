@@ -1,4 +1,4 @@
-"""Everything a training run is, in one pytree: what a checkpoint saves and a resume restores."""
+"""The whole state of a training run in one pytree, which checkpoints save and resuming restores."""
 
 from typing import Any
 
@@ -30,10 +30,10 @@ class TrainState:
         averaged: exponential average of the actor's parameters: what is judged and exported.
         optimiser: Adam's moments and the learning rate's step count.
         normaliser: normaliser of observations.
-        episode: state of every robot's episode, as the task has it.
-        observation: what every robot sees, one vector each.
+        episode: state of every robot's episode, as the task defines it.
+        observation: observation of every robot, one vector each.
         key: randomness of everything still to come.
-        update: policy updates done.
+        update: number of policy updates done.
     """
 
     params: Any
@@ -48,7 +48,7 @@ class TrainState:
 
 @struct.dataclass
 class Learned:
-    """What a run has learned, to begin another with.
+    """The learned networks of a run, from which another run can begin.
 
     Attributes:
         params: parameters of actor and critic.
@@ -62,11 +62,11 @@ class Learned:
 
     @classmethod
     def of(cls, state: TrainState) -> "Learned":
-        """Take it out of a state."""
+        """Return what the run with this state has learned."""
         return cls(params=state.params, averaged=state.averaged, normaliser=state.normaliser)
 
     def into(self, state: TrainState) -> TrainState:
-        """Return a fresh state with it in place of untrained networks.
+        """Return a fresh state with these networks in place of untrained ones.
 
         Raises:
             InputError: the networks are of other sizes.
@@ -86,13 +86,13 @@ class Learned:
 def make_optimiser(config: PpoConfig, params: PpoParams) -> optax.GradientTransformation:
     """Return Adam with a clipped gradient and a linearly falling learning rate (T sec. 3.4).
 
-    It makes the state; `adam.descend` is its update, written out, and a test holds them together.
+    It makes the state; `adam.descend` is its update, written out, and a test compares the two.
 
     Args:
-        config: how many gradient steps there will be.
-        params: learning rates and longest gradient, constants or traced.
+        config: configuration of PPO, which gives the number of gradient steps.
+        params: hyperparameters: learning rates and gradient norm, constants or traced.
     """
-    # On one vector: a few operations a step instead of a few for each layer.
+    # On one vector: a few operations per step instead of a few per layer.
     return optax.flatten(
         optax.chain(
             optax.clip_by_global_norm(params.max_gradient_norm),
@@ -105,8 +105,8 @@ def learning_rate(config: PpoConfig, params: PpoParams) -> optax.Schedule:
     """Return the falling learning rate, a function of the gradient steps done.
 
     Args:
-        config: how many gradient steps there will be.
-        params: the rates at start and end, constants or traced.
+        config: configuration of PPO, which gives the number of gradient steps.
+        params: hyperparameters: learning rates at start and end, constants or traced.
     """
     gradient_steps = config.updates * config.epochs * config.minibatches
     return optax.linear_schedule(params.learning_rate, params.final_learning_rate, gradient_steps)
@@ -117,12 +117,12 @@ class FirstKeys:
     """Randomness of a run's first state; each is consumed once.
 
     Attributes:
-        rest: of everything after it.
-        policy: of the actor's parameters.
-        value: of the critic's.
-        pool: of the candidates for first states.
-        take: of the choice among them.
-        stagger: of the times at which episodes began.
+        rest: key for everything after the first state.
+        policy: key for the actor's parameters.
+        value: key for the critic's parameters.
+        pool: key for the candidates for first states.
+        take: key for the choice among them.
+        stagger: key for the times at which episodes began.
     """
 
     rest: Key[Array, ""]
@@ -150,9 +150,9 @@ def initial_state(
     Args:
         config: configuration of the run.
         task: task that steps on the device.
-        world: what the robots train in.
+        world: world that the robots train in.
         networks: actor and critic.
-        seed: training seed in place of the configuration's: a population's members differ in it.
+        seed: training seed in place of the configuration's; members of a population differ in it.
     """
     keys = FirstKeys.of(config.seed if seed is None else seed)
     count = config.ppo.environments

@@ -1,4 +1,4 @@
-"""The pieces of one training: its task, its worlds, its networks, and what is compiled of them."""
+"""The pieces of one training: task, worlds, networks, and the functions compiled from them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -22,18 +22,19 @@ from jaxleas.types import InputError
 
 @dataclass
 class Trainer:
-    """What one training needs, made once.
+    """The pieces that one training needs, made once.
 
     Attributes:
         config: configuration of the run.
-        task: what is learned.
+        task: task that is learned.
         devices: devices that share the training; by default the first.
-        world: what the robots train in.
-        held_out: what they are examined in.
+        world: world that the robots train in.
+        held_out: world that the robots are examined in.
         networks: actor and critic.
-        train_step: the next state and metrics; the state it is given is used up.
-        examine: fractions of held-out starts that reached, failed and stopped.
-        fresh_state: makes the state before the first update.
+        train_step: function that returns the next state and metrics; it consumes the given state.
+        examine: function that returns the fractions of held-out starts that reached the goal,
+            failed and stopped.
+        fresh_state: function that makes the state before the first update.
     """
 
     config: RunConfig

@@ -1,4 +1,4 @@
-"""What a run's robots train in, and what they are examined in: never from the same seeds."""
+"""The worlds that robots train in and are examined in: never from the same seeds."""
 
 from typing import Any
 

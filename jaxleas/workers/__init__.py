@@ -1,4 +1,4 @@
-"""Tasks in this process, in others, or on Ray; a worker that dies costs nothing."""
+"""Tasks in this process, in other processes, or on Ray; a worker's death loses no task."""
 
 from jaxleas.workers.processes import Here, ProcessWorkers, WorkerError, Workers, workers_for
 

@@ -1,4 +1,4 @@
-"""Workers: one function for many tasks, in this process or in several that are kept alive."""
+"""Workers: one function for many tasks, in this process or in several that stay alive."""
 
 import os
 import signal
@@ -16,21 +16,21 @@ from jaxleas.types.errors import InputError, JaxleasError
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 MOST_DEATHS = 3
-"""Of workers over one and the same task, after which it is given up."""
+"""Number of workers that die on the same task before it is given up."""
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 class WorkerError(JaxleasError):
-    """A task that cannot be done: its workers die over it, whoever tries."""
+    """A task cannot be done: every worker that tries dies."""
 
     exit_code = 1
 
 
 class Workers(Protocol):
-    """Whoever does tasks.
+    """Workers that do tasks.
 
     Attributes:
-        count: tasks done at the same time.
+        count: number of tasks done at the same time.
     """
 
     count: int
@@ -38,16 +38,16 @@ class Workers(Protocol):
     def run(
         self, function: Callable[[Task], Answer], tasks: Sequence[Task]
     ) -> Iterator[tuple[int, Answer]]:
-        """Yield (index of the task, answer) as tasks are done: each of them once."""
+        """Yield (index of the task, answer) as tasks are done, each of them once."""
         ...
 
     def close(self) -> None:
-        """Let the workers go."""
+        """End the workers."""
         ...
 
 
 class Here:
-    """Does tasks in this process, one after the other."""
+    """Workers that do tasks in this process, one after another."""
 
     count = 1
 
@@ -63,9 +63,9 @@ class Here:
 
 
 class ProcessWorkers:
-    """Processes that are started once, when there is first something to do, and kept.
+    """Worker processes that are started once, when there are first tasks, and kept.
 
-    A worker that dies is replaced, and the task it had is done again, by whoever is free. Ctrl-C
+    A worker that dies is replaced, and its task is done again by any free worker. Ctrl-C
     ends the workers that are busy; the next `run` starts others. Programs that use this need the
     usual `if __name__ == "__main__":`, since workers import the main module.
 
@@ -78,7 +78,7 @@ class ProcessWorkers:
 
         Args:
             count: number of processes.
-            preload: modules that a server of forks imports once for all of them: they must start
+            preload: modules that a fork server imports once for all processes: they must start
                 neither JAX nor threads.
         """
         require_count(count)
@@ -88,16 +88,16 @@ class ProcessWorkers:
 
     @property
     def pids(self) -> list[int]:
-        """Process ids of the workers alive."""
+        """Process ids of the living workers."""
         return [worker.process.pid for worker in self._team if worker.process.pid is not None]
 
     def run(
         self, function: Callable[[Task], Answer], tasks: Sequence[Task]
     ) -> Iterator[tuple[int, Answer]]:
-        """Yield (index of the task, answer) as tasks are done: each of them once.
+        """Yield (index of the task, answer) as tasks are done, each of them once.
 
         Raises:
-            WorkerError: workers die over one task again and again.
+            WorkerError: workers repeatedly die on one task.
         """
         waiting, deaths = deque(range(len(tasks))), [0] * len(tasks)
         busy: dict[Connection, tuple[_Worker, int]] = {}
@@ -115,7 +115,7 @@ class ProcessWorkers:
                         continue
                     yield index, answer[0]
         finally:
-            for worker, _ in busy.values():  # interrupted: nobody waits for these any more
+            for worker, _ in busy.values():  # interrupted: their answers are no longer needed
                 worker.kill()
                 self._team.remove(worker)
 
@@ -126,7 +126,7 @@ class ProcessWorkers:
         waiting: deque[int],
         busy: "dict[Connection, tuple[_Worker, int]]",
     ) -> None:
-        """Give every idle worker a task, and engage more workers where there is work for them."""
+        """Give every idle worker a task, and start more workers if there are tasks for them."""
         idle = [worker for worker in self._team if worker.connection not in busy]
         while waiting and (idle or len(self._team) < self.count):
             if idle:
@@ -137,12 +137,12 @@ class ProcessWorkers:
             index = waiting.popleft()
             if worker.take(function, tasks[index]):
                 busy[worker.connection] = worker, index
-            else:  # it died while it had nothing to do
+            else:  # it died while it was idle
                 self._team.remove(worker)
                 waiting.appendleft(index)
 
     def close(self) -> None:
-        """Let the workers go."""
+        """End the workers."""
         for worker in self._team:
             worker.kill()
         self._team = []
@@ -160,7 +160,7 @@ class _Worker:
         theirs.close()
 
     def take(self, function: Callable[[Any], Any], task: Any) -> bool:
-        """Hand over a task; return whether anybody is there to take it."""
+        """Send a task; return whether the process was alive to take it."""
         try:
             self.connection.send((function, task))
         except OSError:
@@ -169,7 +169,7 @@ class _Worker:
         return True
 
     def answer(self) -> tuple[Any] | None:
-        """Return what the worker answers; None if it died instead."""
+        """Return the worker's answer; None if it died instead."""
         try:
             answer, error, story = self.connection.recv()
         except (EOFError, OSError):
@@ -188,7 +188,7 @@ class _Worker:
 
 
 def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
-    """Return how processes are started: by a server that imports what they need once for all.
+    """Return the way to start processes: a fork server that imports the modules once for all.
 
     Its forks start in milliseconds and are safe: the server itself starts neither JAX nor threads.
     """
@@ -200,8 +200,8 @@ def _context(preload: Sequence[str]) -> ForkServerContext | SpawnContext:
 
 
 def _work(connection: Connection) -> None:
-    """Do tasks until nobody is at the other end."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to answer
+    """Do tasks until the other end of the pipe closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
     try:
         while True:
             function, task = connection.recv()
@@ -231,7 +231,7 @@ def workers_for(count: int, preload: Sequence[str] = ()) -> Workers:
 
     Args:
         count: number of tasks done at the same time.
-        preload: modules that processes import once for all (`ProcessWorkers`).
+        preload: modules that are imported once for all processes (`ProcessWorkers`).
 
     Raises:
         InputError: the count is below 1.

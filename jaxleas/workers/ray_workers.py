@@ -1,4 +1,4 @@
-"""Workers on a Ray cluster: the same tasks, on as many machines as there are (an extra)."""
+"""Workers on a Ray cluster: the same tasks on any number of machines (an extra)."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -10,20 +10,20 @@ from jaxleas.workers.processes import MOST_DEATHS, Answer, Task, WorkerError, re
 
 
 class RayWorkers:
-    """Does tasks on Ray: the cluster that RAY_ADDRESS names, or this machine.
+    """Workers on Ray: on the cluster that RAY_ADDRESS names, or on this machine.
 
-    Ray itself does the task of a worker that dies again. All machines need this package, and for
-    verdict files the same folders under the same names.
+    Ray itself repeats the task of a worker that dies. All machines need this package, and for
+    verdict files the same folders under the same paths.
 
     Attributes:
-        count: tasks at the same time.
+        count: number of tasks done at the same time.
     """
 
     def __init__(self, count: int | None = None) -> None:
         """Connect to Ray, or start it here.
 
         Args:
-            count: tasks at the same time; as many as the cluster has processors if None.
+            count: number of tasks at the same time; None: the cluster's number of processors.
 
         Raises:
             InputError: Ray is not installed, does not answer, or the count is below 1.
@@ -39,10 +39,10 @@ class RayWorkers:
     def run(
         self, function: Callable[[Task], Answer], tasks: Sequence[Task]
     ) -> Iterator[tuple[int, Answer]]:
-        """Yield (index of the task, answer) as tasks are done: each of them once.
+        """Yield (index of the task, answer) as tasks are done, each of them once.
 
         Raises:
-            WorkerError: workers die over one task again and again.
+            WorkerError: workers repeatedly die on one task.
         """
         ray = self._ray
         remote = ray.remote(function).options(max_retries=MOST_DEATHS - 1, num_cpus=1)
@@ -56,11 +56,11 @@ class RayWorkers:
                 index = flying.pop(done[0])
                 yield index, self._answer(done[0])
         finally:
-            for waiting in flying:  # interrupted: nobody waits for these any more
+            for waiting in flying:  # interrupted: their answers are no longer needed
                 ray.cancel(waiting, force=True)
 
     def close(self) -> None:
-        """Leave Ray, if we came to it."""
+        """Disconnect from Ray, if this object connected to it."""
         if self._started:
             self._ray.shutdown()
 
@@ -72,7 +72,7 @@ class RayWorkers:
                 include_dashboard=False if here else None,
                 log_to_driver=False,
             )
-        except Exception as error:  # Ray raises bare ones too, when a node is slow to start
+        except Exception as error:  # Ray also raises bare exceptions, when a node is slow to start
             raise InputError(f"Ray cannot be reached or started: {error}") from error
 
     def _answer(self, reference: Any) -> Any:
@@ -89,7 +89,7 @@ def require_ray() -> Any:
     """Return the module `ray`.
 
     Raises:
-        InputError: it is not installed.
+        InputError: Ray is not installed.
     """
     try:
         ray = import_module("ray")

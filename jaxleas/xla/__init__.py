@@ -1,1 +1,1 @@
-"""What is written for the compiler and not for people: each with a plain twin."""
+"""Code written for the compiler, not for readers; each function has a plain twin."""

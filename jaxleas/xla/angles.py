@@ -1,7 +1,7 @@
 """Sine, cosine and bearing by polynomials, which a compiler turns into vector instructions.
 
-XLA:CPU calls the C library for each single number instead. Coefficients: Cephes (S. Moshier),
-`sinf.c` and `atanf.c`; errors stay below two units in the last place.
+For JAX's own functions XLA:CPU calls the C library for each single number. Coefficients: Cephes
+(S. Moshier), `sinf.c` and `atanf.c`; errors stay below two units in the last place.
 """
 
 import jax
@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-_ROUND = 12582912.0  # 1.5 * 2^23: added to a float32, it leaves a whole number in the last bits
+_ROUND = 12582912.0  # 1.5 * 2^23: adding it to a float32 leaves a whole number in the last bits
 _HALF_PI = (1.5703125, 4.837512969970703125e-4, 7.54978995489188e-8)  # in three parts
 _EIGHTH_TURN = 0.41421356  # tan(pi / 8)
 
@@ -18,7 +18,8 @@ def sine_cosine(angle: Float[Array, "*batch"]) -> tuple[Array, Array]:
     """Return sine and cosine.
 
     Args:
-        angle: within some thousand turns of zero [rad]; float32, other types go to JAX's functions.
+        angle: angle within a few thousand turns of zero [rad]; float32, as other types use JAX's
+            functions.
     """
     angle = jnp.asarray(angle)
     if angle.dtype != jnp.float32:
@@ -41,11 +42,11 @@ def sine_cosine(angle: Float[Array, "*batch"]) -> tuple[Array, Array]:
 
 
 def bearing(x: Float[Array, "*batch"], y: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-    """Return the angle of a direction from the x axis, atan2(y, x), in [-pi, pi]; zero for none.
+    """Return the angle of a direction from the x axis, atan2(y, x), in [-pi, pi]; zero without one.
 
     Args:
-        x: along the axis [any unit]; float32, other types go to JAX's function.
-        y: to its left.
+        x: component along the axis [any unit]; float32, as other types use JAX's function.
+        y: component to the left of the axis, likewise.
     """
     x, y = jnp.asarray(x), jnp.asarray(y)
     if x.dtype != jnp.float32 or y.dtype != jnp.float32:

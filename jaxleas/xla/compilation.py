@@ -1,4 +1,4 @@
-"""Compiled programs are kept between processes: the second start of a run costs seconds less."""
+"""Compiled programs are kept between processes, which makes later starts of a run faster."""
 
 import os
 from pathlib import Path
@@ -7,7 +7,7 @@ import jax
 
 
 def keep_compiled_programs() -> None:
-    """Turn on JAX's persistent compile cache, unless the user has chosen one or none.
+    """Turn on JAX's persistent compilation cache, unless the user has set or disabled one.
 
     The folder is JAX_COMPILATION_CACHE_DIR if set (empty: no cache), else `jaxleas/xla` in the
     user's cache folder.

@@ -1,4 +1,4 @@
-"""A border that XLA:CPU's fusion does not cross."""
+"""A barrier that XLA:CPU's fusion does not cross."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -13,13 +13,13 @@ Tree = TypeVar("Tree")
 def compute_once(function: Callable[..., Tree], always: Array, *operands: Any) -> Tree:
     """Return function(*operands), computed once and kept apart from what comes before and after.
 
-    XLA:CPU fuses what is cheap by its count into each of its users, and computes it again for each
-    and for each of its elements; it drops `optimization_barrier`, and keeps a branch.
+    XLA:CPU fuses computations that it estimates as cheap into each of their users, and repeats them
+    for each user and each element. It drops `optimization_barrier`, but keeps a branch.
 
     Args:
-        function: of arrays, to a pytree of arrays.
-        always: true, and not known to the compiler.
-        operands: pytrees of arrays.
+        function: function from arrays to a pytree of arrays.
+        always: value that is true, which the compiler does not know.
+        operands: pytrees of arrays, the function's arguments.
     """
 
     def apart(*operands: Any) -> Tree:

@@ -1,8 +1,8 @@
-"""Dense layers with gradients made by hand; `plain_dense` is their twin.
+"""Dense layers with hand-written gradients; `plain_dense` is their twin.
 
-XLA:CPU uses a processor's units for matrices only where it is asked to, turns whole gradients
-round where the order of a product is unlucky, and sums rows in float32 once more. Here each product
-is written in the order that it computes fastest.
+XLA:CPU uses a processor's matrix units only on request, transposes whole gradients if a product has
+an unlucky order, and sums rows once more in float32. Here each product is written in the order that
+XLA:CPU computes fastest.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ Layers = Sequence[tuple[Array, Array]]
 def plain_dense(
     layers: Layers, rows: Float[Array, "*batch inputs"], activation: Activation
 ) -> Float[Array, "*batch outputs"]:
-    """Return what dense layers answer, in the numbers of the weights: as anybody would write it.
+    """Return the output of dense layers, in the number type of the weights, by the plain formula.
 
     Args:
         layers: kernel and bias of each layer.
@@ -46,15 +46,15 @@ def dense(
     numbers: str = "float32",
     always: Bool[Array, ""] | None = None,
 ) -> Float[Array, "*batch outputs"]:
-    """Return what dense layers answer, float32.
+    """Return the output of dense layers, float32.
 
     Args:
         layers: kernel and bias of each layer.
         rows: inputs of the first layer.
         activation: function between two layers.
-        numbers: type in which products are taken; the last layer's are float32.
-        always: true, and not known to the compiler: keeps the activations apart (`compute_once`)
-            for a gradient, whose products want them turned round.
+        numbers: number type in which products are computed; those of the last layer are float32.
+        always: value that is true, which the compiler does not know: it keeps the activations
+            separate (`compute_once`) for a gradient, whose products need them transposed.
     """
     *inner, (kernel, bias) = layers
     types = [numbers] * (len(inner) - 1) + ["float32"]
@@ -72,14 +72,14 @@ def _as_row(bias: Array, rows: Array) -> Array:
 def _layer(
     activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array, always: Always
 ) -> Array:
-    """Return activation(rows @ kernel + bias), in the numbers that the next product takes."""
+    """Return activation(rows @ kernel + bias), in the number type of the next product."""
     return _answer(activation, numbers, rows, kernel, bias, always)[0]
 
 
 def _answer(
     activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array, always: Always
 ) -> tuple[Array, Array]:
-    """Return a layer's answer, and what its gradient needs of it: itself, or what was activated."""
+    """Return a layer's output, and what its gradient needs: that or the activation's input."""
 
     def activate(before: Array, bias: Array) -> Array:
         return activation(before + _as_row(bias, before)).astype(numbers)
@@ -132,7 +132,7 @@ def product(
 def _product_backward(kept: tuple[Array, Array], gradient: Array) -> tuple[Array, Array]:
     rows, kernel = kept
     batch = tuple(range(rows.ndim - 1))
-    # In this order: JAX's own is its transpose, for which XLA:CPU turns the whole gradient round.
+    # In this order: JAX computes the transpose, for which XLA:CPU transposes the whole gradient.
     of_kernel = jax.lax.dot_general(
         rows, gradient, ((batch, batch), ((), ())), preferred_element_type=kernel.dtype
     )
@@ -151,10 +151,10 @@ def _rows_by(rows: Array, kernel: Array) -> Array:
 
 
 def _sum_of_rows(rows: Array) -> Array:
-    """Return the sum over all but the last axis, float32."""
+    """Return the sum over all axes except the last, float32."""
 
     def as_product(rows: Array) -> Array:
-        # Of the same rows as the products beside it: a sum would have them once more, in float32.
+        # A product, of the same rows as other products: a sum would copy them again, in float32.
         flat = rows.reshape(-1, rows.shape[-1])
         ones = jnp.ones((1, len(flat)), rows.dtype)
         return jnp.matmul(ones, flat, preferred_element_type=jnp.float32)[0]
@@ -168,8 +168,8 @@ def _sum_of_rows(rows: Array) -> Array:
 def _by_platform(function: Callable[..., Any], rows: Array, *others: Array) -> Any:
     """Return function(type of sums, rows, *others).
 
-    A processor's units for matrices sum bfloat16 in float32, and XLA:CPU uses them only where
-    that is asked for; elsewhere sums that are kept are smaller in the rows' type.
+    A processor's matrix units sum bfloat16 in float32, and XLA:CPU uses them only if that type is
+    requested; on other devices stored sums take less memory in the rows' type.
     """
     return jax.lax.platform_dependent(
         rows,

@@ -1,23 +1,23 @@
-"""Large memory pages for arrays that are read here and there."""
+"""Large memory pages for arrays that are read at scattered places."""
 
 import ctypes
 import sys
 
 from jax import Array
 
-_SIZE = 2 * 2**20  # of a large page [B]
+_SIZE = 2 * 2**20  # size of a large page [B]
 _MADV_HUGEPAGE, _MADV_COLLAPSE = 14, 25  # <linux/mman.h>; the second since Linux 6.1
 
 
 def hold_in_huge_pages(array: Array) -> bool:
     """Ask Linux to hold an array of this process's memory in large pages.
 
-    A gather from a whole atlas touches thousands of pages of 4 KiB, more than a processor keeps the
-    addresses of. What does not fill a large page stays as it is; so does everything on other
+    A gather from a whole atlas touches thousands of pages of 4 KiB, more than a processor caches
+    addresses of. Parts that do not fill a large page stay as they are; so does everything on other
     systems and devices.
 
     Returns:
-        Whether Linux did it.
+        Whether Linux granted it.
     """
     devices = array.devices()
     if sys.platform != "linux" or {each.platform for each in devices} != {"cpu"}:
@@ -31,7 +31,7 @@ def hold_in_huge_pages(array: Array) -> bool:
         return False
     madvise = ctypes.CDLL(None, use_errno=True).madvise
     madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
-    # The first lets a kernel too old for the second do it some time later.
+    # Kernels too old for the second call do it some time after the first.
     return (
         madvise(first, length, _MADV_HUGEPAGE) == 0 and madvise(first, length, _MADV_COLLAPSE) == 0
     )

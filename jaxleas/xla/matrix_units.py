@@ -1,4 +1,4 @@
-"""What numbers the training device multiplies fastest without a loss of learning."""
+"""The number type that the training device multiplies fastest without harm to learning."""
 
 from functools import cache
 from pathlib import Path
@@ -12,7 +12,7 @@ CPUINFO = Path("/proc/cpuinfo")
 
 @cache
 def native_products() -> ProductType:
-    """Return bfloat16 where the device that trains has units that multiply it, else float32."""
+    """Return bfloat16 if the training device has units that multiply it, else float32."""
     device = jax.devices()[0]
     fit = has_matrix_units(CPUINFO) if device.platform == "cpu" else multiplies_bfloat16(device)
     return "bfloat16" if fit else "float32"
@@ -21,16 +21,16 @@ def native_products() -> ProductType:
 def has_matrix_units(cpuinfo: Path) -> bool:
     """Return whether a processor has AMX for bfloat16, as Linux lists its features.
 
-    Without, XLA computes such products by way of float32, more slowly than these themselves.
+    Without it, XLA computes such products via float32, more slowly than float32 products.
     """
     try:
         text = cpuinfo.read_text(encoding="utf-8")
-    except OSError:  # another operating system: none is known to have them
+    except OSError:  # another operating system, where it is unknown
         return False
     return any("amx_bf16" in line.split() for line in text.splitlines() if line[:5] == "flags")
 
 
 def multiplies_bfloat16(device: Any) -> bool:
-    """Return whether an accelerator does: GPUs before Ampere (compute capability 8) do not."""
+    """Return whether an accelerator multiplies bfloat16; GPUs before Ampere (8.0) do not."""
     capability = getattr(device, "compute_capability", None)
     return capability is None or float(capability) >= 8.0

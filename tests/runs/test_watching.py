@@ -70,7 +70,7 @@ def test_a_watcher_that_fails_is_named_once_and_stops_nobody() -> None:
     assert [each[0] for each in broken.told] == ["begin", "row"]
     assert len(whole.told) == 22
     (sentence,) = said
-    assert sentence.startswith("broken failed and is told nothing more: no route to host")
+    assert sentence.startswith("broken failed and receives nothing more: no route to host")
 
 
 def test_nobody_waits_for_a_watcher_that_hangs(monkeypatch) -> None:

@@ -63,7 +63,7 @@ def test_a_study_of_another_sweep_is_refused(tmp_path):
     [
         ("somewhere", "give grpc://HOST:PORT, a database URL"),
         ("grpc://localhost", "a storage proxy is grpc://HOST:PORT"),
-        ("grpc://localhost:{port}", "nobody answered within"),
+        ("grpc://localhost:{port}", "no answer within"),
         ("sqlite:////nowhere/at/all.db", "cannot be reached"),
         ("sqlite://", "forgets all when it ends"),
         ("oracel://host/db", "--storage oracel://host/db"),

@@ -36,6 +36,6 @@ def test_the_host_waits_before_it_is_too_far_ahead(monkeypatch):
     )
     state = SimpleNamespace(update=0, normaliser=None, averaged=None)
     interruption = SimpleNamespace(requested=False)
-    loop._Session(trainer, interruption, None).go_on(state)  # type: ignore[arg-type]
+    loop._Session(trainer, interruption, None).run(state)  # type: ignore[arg-type]
     assert len(begun) == config.ppo.updates
     assert max(ahead) == loop.MOST_AHEAD

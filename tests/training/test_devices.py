@@ -105,7 +105,7 @@ def test_devices_that_are_not_there_or_cannot_share_evenly_are_refused(monkeypat
     several = choose_devices("all", tiny().ppo).mesh.devices.tolist() * 3
     monkeypatch.setattr("jax.devices", lambda: several)
     with pytest.raises(InputError, match=r"3 devices cannot share the robots evenly.*--devices 2"):
-        choose_devices("all", tiny().ppo)  # 32 robots a minibatch
+        choose_devices("all", tiny().ppo)  # 32 robots per minibatch
 
 
 @pytest.mark.parametrize(

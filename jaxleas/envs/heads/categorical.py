@@ -1,4 +1,4 @@
-"""A head of choices: which one of several."""
+"""A head that chooses one of several options."""
 
 from dataclasses import dataclass
 
@@ -29,9 +29,9 @@ class Categorical:
 
     Attributes:
         name: name of the part of the action.
-        choices: how many there are.
-        mirror_order: the choice that each becomes when left and right are swapped: its own inverse,
-            as swapping twice changes nothing; None where there is no such symmetry.
+        choices: number of choices.
+        mirror_order: choice that each choice becomes when left and right are swapped; it is its
+            own inverse, as swapping twice changes nothing; None where there is no such symmetry.
     """
 
     name: str
@@ -45,40 +45,40 @@ class Categorical:
 
     @property
     def size(self) -> int:
-        """Numbers in a raw action: the index alone."""
+        """Length of a raw action: the index alone."""
         return 1
 
     @property
     def logits(self) -> tuple[int, ...]:
-        """One for each choice."""
+        """Length of the network's answer: one number for each choice."""
         return (self.choices,)
 
     @property
     def noise(self) -> int:
-        """Random numbers that a sample takes."""
+        """Number of random numbers that a sample takes."""
         return self.choices
 
     @property
     def entropy_noise(self) -> int:
-        """Nothing: the entropy is a sum over the choices."""
+        """Zero: the entropy is a sum over the choices and needs no samples."""
         return 0
 
     @property
     def symmetric(self) -> bool:
-        """Whether it has a mirror."""
+        """Whether the head has a mirror."""
         return self.mirror_order is not None
 
     def mirrored_raw(self, raw: Float[Array, "*batch 1"]) -> Float[Array, "*batch 1"]:
-        """Return the choice that each becomes when left and right are swapped."""
+        """Return the choice that each choice becomes when left and right are swapped."""
         order = jnp.asarray(self.mirror_order, jnp.float32)
         return order.at[raw.astype(jnp.int32)].get(mode="clip")
 
     def draw_noise(self, key: Key[Array, ""], shape: tuple[int, ...]) -> Array:
-        """Draw Gumbel numbers: the largest sum with the logarithms is a sample."""
+        """Draw Gumbel noise: the choice with the largest sum of noise and logarithm is a sample."""
         return jax.random.gumbel(key, (*shape, self.choices))
 
     def distribution(self, *logits: Array) -> CategoricalDistribution:
-        """Return the softmax's logarithm."""
+        """Return the logarithm of the softmax."""
         return CategoricalDistribution(jax.nn.log_softmax(logits[0], axis=-1))
 
     def sample(self, distribution: CategoricalDistribution, noise: Array) -> Array:
@@ -91,7 +91,7 @@ class Categorical:
         return raw[..., 0].astype(jnp.int32)
 
     def mode(self, *logits: Array) -> Int[Array, "*batch"]:
-        """Return the likeliest choice, of equals the first."""
+        """Return the most likely choice, the first of equals."""
         return jnp.argmax(logits[0], axis=-1).astype(jnp.int32)
 
     def command(self, action: Int[Array, "*batch"]) -> Int[Array, "*batch"]:
@@ -104,7 +104,7 @@ class Categorical:
         return jnp.sum(chosen * distribution.log_probability, axis=-1)
 
     def entropy(self, distribution: CategoricalDistribution, noise: Array) -> Array:
-        """Return the entropy."""
+        """Return the entropy of the distribution."""
         del noise
         logs = distribution.log_probability
         return -jnp.sum(jnp.exp(logs) * logs, axis=-1)
@@ -116,7 +116,7 @@ class Categorical:
 
     def mirrored(self, distribution: CategoricalDistribution) -> CategoricalDistribution:
         """Return a distribution with left and right swapped."""
-        # Its own inverse, so that the order in which choices go is the one in which they come.
+        # The order is its own inverse, so that it maps in both directions.
         order = np.asarray(self.mirror_order)
         return CategoricalDistribution(distribution.log_probability[..., order])
 

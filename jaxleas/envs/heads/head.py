@@ -1,4 +1,4 @@
-"""What a head of a policy is: a distribution of a part of the action."""
+"""The protocol of a policy's head: a distribution of a part of the action."""
 
 from typing import Any, Protocol
 
@@ -11,16 +11,16 @@ from jaxleas.types.onnx_nodes import OnnxNodes
 class Head(Protocol):
     """A part of the action, and how it is distributed; frozen and hashable.
 
-    A *raw* action is what is stored and what densities are about; an *action* is what the
-    environment takes; a *command* is the same in physical units.
+    A *raw* action is what is stored and what densities are of; an *action* is what the
+    environment takes; a *command* is the action in physical units.
 
     Attributes:
-        name: name of the part, of its ONNX output, too.
-        size: numbers in a raw action.
-        logits: numbers that the network answers for it.
-        noise: random numbers that a sample takes.
-        entropy_noise: random numbers that an estimate of the entropy takes.
-        symmetric: whether it is known what becomes of it when left and right are swapped.
+        name: name of the part, and of its ONNX output.
+        size: length of a raw action.
+        logits: lengths of the consecutive parts of the network's answer for it.
+        noise: number of random numbers that a sample takes.
+        entropy_noise: number of random numbers that an estimate of the entropy takes.
+        symmetric: whether the head has a mirror: its image when left and right are swapped.
     """
 
     @property
@@ -30,35 +30,35 @@ class Head(Protocol):
 
     @property
     def symmetric(self) -> bool:
-        """Whether `mirrored` and `mirrored_raw` can be asked for."""
+        """Whether `mirrored` and `mirrored_raw` can be called."""
         ...
 
     @property
     def size(self) -> int:
-        """Numbers in a raw action."""
+        """Length of a raw action."""
         ...
 
     @property
     def logits(self) -> tuple[int, ...]:
-        """Lengths of the consecutive parts of what the network answers."""
+        """Lengths of the consecutive parts of the network's answer."""
         ...
 
     @property
     def noise(self) -> int:
-        """Random numbers that a sample takes."""
+        """Number of random numbers that a sample takes."""
         ...
 
     @property
     def entropy_noise(self) -> int:
-        """Standard normal numbers that an estimate of the entropy takes."""
+        """Number of standard normal numbers that an estimate of the entropy takes."""
         ...
 
     def draw_noise(self, key: Key[Array, ""], shape: tuple[int, ...]) -> Array:
-        """Draw the chance of samples in bulk: [*shape, noise]."""
+        """Draw the noise of samples in bulk: [*shape, noise]."""
         ...
 
     def distribution(self, *logits: Array) -> Any:
-        """Return the distribution that the parts of the network's answer stand for."""
+        """Return the distribution that the parts of the network's answer define."""
         ...
 
     def sample(self, distribution: Any, noise: Array) -> Float[Array, "*batch size"]:
@@ -66,11 +66,11 @@ class Head(Protocol):
         ...
 
     def action(self, raw: Float[Array, "*batch size"]) -> Array:
-        """Return the action that a raw one stands for."""
+        """Return the action of a raw action."""
         ...
 
     def mode(self, *logits: Array) -> Array:
-        """Return the action without chance."""
+        """Return the deterministic action, the mode of the distribution."""
         ...
 
     def command(self, action: Array) -> Array:
@@ -78,7 +78,7 @@ class Head(Protocol):
         ...
 
     def log_density(self, raw: Array, distribution: Any) -> Float[Array, "*batch"]:
-        """Return the log density of a raw action, less what no distribution changes."""
+        """Return the log density of a raw action, without terms that no distribution changes."""
         ...
 
     def entropy(self, distribution: Any, noise: Array) -> Float[Array, "*batch"]:

@@ -36,9 +36,9 @@ class Normal:
 
     Attributes:
         name: name of the part of the action.
-        scales: physical scale of its numbers, one after another.
-        mirror: what becomes of an action when left and right are swapped: its values may change
-            place and sign; None where there is no such symmetry.
+        scales: physical scales of its numbers, one after another.
+        mirror: image of an action when left and right are swapped: its values may change place and
+            sign; None where there is no such symmetry.
     """
 
     name: str
@@ -47,27 +47,27 @@ class Normal:
 
     @property
     def symmetric(self) -> bool:
-        """Whether it has a mirror."""
+        """Whether the head has a mirror."""
         return self.mirror is not None
 
     @property
     def size(self) -> int:
-        """Numbers in an action."""
+        """Length of an action."""
         return sum(scale.size for scale in self.scales)
 
     @property
     def logits(self) -> tuple[int, ...]:
-        """Locations, then what deviations are made of."""
+        """Lengths of the locations, then of the values from which deviations are made."""
         return self.size, self.size
 
     @property
     def noise(self) -> int:
-        """Random numbers that a sample takes."""
+        """Number of random numbers that a sample takes."""
         return self.size
 
     @property
     def entropy_noise(self) -> int:
-        """Standard normal numbers that an estimate of the entropy takes."""
+        """Number of standard normal numbers that an estimate of the entropy takes."""
         return self.size
 
     def draw_noise(self, key: Key[Array, ""], shape: tuple[int, ...]) -> Array:
@@ -84,7 +84,7 @@ class Normal:
         return distribution.location + distribution.deviation * noise
 
     def action(self, raw: Array) -> Array:
-        """Return the tanh."""
+        """Return the tanh of a raw action."""
         return jnp.tanh(raw)
 
     def mode(self, *logits: Array) -> Array:
@@ -106,7 +106,7 @@ class Normal:
         return jnp.sum(-0.5 * distance * distance - jnp.log(deviation) - LOG_ROOT_TWO_PI, axis=-1)
 
     def entropy(self, distribution: NormalDistribution, noise: Array) -> Array:
-        """Return the normal's entropy, and the log slope of the tanh at one sample."""
+        """Return the entropy of the normal, plus the log slope of the tanh at one sample."""
         sample = self.sample(distribution, noise)
         entropy = 0.5 + LOG_ROOT_TWO_PI + jnp.log(distribution.deviation) + tanh_log_slope(sample)
         return jnp.sum(entropy, axis=-1)
@@ -135,7 +135,7 @@ class Normal:
         return self.mirror
 
     def onnx(self, nodes: OnnxNodes, logits: str) -> str:
-        """Add tanh and scales; of the answer, exploration's half is left out."""
+        """Add tanh and scales; the deviations in the network's answer are left out."""
         action = nodes.add("Tanh", nodes.columns(logits, 0, self.size))
         parts, begin = [], 0
         for scale in self.scales:

@@ -12,10 +12,10 @@ from jaxleas.types.onnx_nodes import OnnxNodes
 
 
 class Scale(Protocol):
-    """How some consecutive numbers of an action are scaled.
+    """A scale of some consecutive numbers of an action.
 
     Attributes:
-        size: how many.
+        size: number of values.
     """
 
     @property
@@ -24,11 +24,11 @@ class Scale(Protocol):
         ...
 
     def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
-        """Return physical values; what lies outside [-1, 1] is clipped."""
+        """Return physical values; actions outside [-1, 1] are clipped."""
         ...
 
     def onnx(self, nodes: OnnxNodes, action: str) -> str:
-        """Add the nodes that compute the same of a value within [-1, 1]; return its name."""
+        """Add the nodes that scale a value within [-1, 1]; return the name of their result."""
         ...
 
 
@@ -39,7 +39,7 @@ class Interval:
     Attributes:
         low: physical value of -1.
         high: physical value of 1.
-        size: how many.
+        size: number of values.
     """
 
     low: float

@@ -1,4 +1,4 @@
-"""LEAS steering: a root that walks towards goals over terrain it sees a little of (T ch. 3)."""
+"""LEAS steering: a root walks towards goals over terrain that it sees only locally (T ch. 3)."""
 
 from jaxleas.envs.steering.config import (
     MotionLimits,

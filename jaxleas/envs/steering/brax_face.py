@@ -1,7 +1,7 @@
 """The steering task as a Brax `Env`, for Brax's own trainers and wrappers.
 
-Importing this module imports Brax's environments and with them its physics; nothing else in the
-package does.
+Importing this module imports Brax's environments and with them its physics; no other module of the
+package does so.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ class BraxSteering(Env):
         self._weights = RewardParams.of(env.config.reward)
 
     def reset(self, rng: jax.Array) -> Any:
-        """Draw terrain, start, heading and goal, and stand there."""
+        """Draw terrain, start, heading and goal; return the state at that start."""
         pool_key, take_key, next_key = jax.random.split(rng, 3)
         keys = (pool_key, take_key)
         state, observation = begin(self.steering, self.world, keys, 1, of=CANDIDATES)
@@ -48,17 +48,17 @@ class BraxSteering(Env):
 
     def step(self, state: Any, action: jax.Array) -> Any:
         """Advance one time step; `done` is set where the episode failed and where it is cut."""
-        after, outcome = self.steering.step(
+        after, result = self.steering.step(
             self.world.atlas, self._weights, state.pipeline_state, action
         )
-        truncation = outcome.truncated.astype(jnp.float32)
-        info = state.info | {"truncation": truncation, "margin": outcome.margin}
+        truncation = result.truncated.astype(jnp.float32)
+        info = state.info | {"truncation": truncation, "margin": result.margin}
         return state.replace(
             pipeline_state=after,
-            obs=outcome.observation,
-            reward=outcome.reward,
-            done=jnp.maximum(outcome.terminated.astype(jnp.float32), truncation),
-            metrics={"reached": outcome.reached.astype(jnp.float32)},
+            obs=result.observation,
+            reward=result.reward,
+            done=jnp.maximum(result.terminated.astype(jnp.float32), truncation),
+            metrics={"reached": result.reached.astype(jnp.float32)},
             info=info,
         )
 
@@ -74,14 +74,14 @@ class BraxSteering(Env):
 
     @property
     def backend(self) -> str:
-        """Brax asks for a physics backend; there is none here."""
+        """Name of the physics backend that Brax asks for; steering has no physics."""
         return "kinematic"
 
 
 class FreshStartWrapper(Wrapper):
-    """Gives every finished episode a new start.
+    """Wrapper that gives every finished episode a new start.
 
-    Brax's `AutoResetWrapper` puts each environment back to the one start it cached, for ever.
+    Brax's `AutoResetWrapper` always returns each environment to the one start that it cached.
     """
 
     def reset(self, rng: jax.Array) -> Any:
@@ -90,7 +90,7 @@ class FreshStartWrapper(Wrapper):
         return state.replace(info=state.info | {"steps": jnp.zeros(state.done.shape)})
 
     def step(self, state: Any, action: jax.Array) -> Any:
-        """Step; where the episode before was over, step from a fresh start instead."""
+        """Step; where the previous episode was over, step from a fresh start instead."""
         state = self._restart(state)
         steps = state.info["steps"] + 1.0
         after: Any = self.env.step(state, action)
@@ -124,13 +124,14 @@ def wrap_for_training(
     """Return the batched environment; give this as `wrap_env_fn` to Brax's `ppo.train`.
 
     Args:
-        env: the task; its configuration sets the episode's length.
-        episode_length: accepted for Brax and ignored.
-        action_repeat: must be 1.
-        randomization_fn: must be None: every start draws its own terrain.
+        env: Brax environment of the task, whose configuration sets the episode's length.
+        episode_length: length that Brax passes; it is ignored.
+        action_repeat: number of repetitions of each action; it must be 1.
+        randomization_fn: domain randomisation; it must be None, as every start draws its own
+            terrain.
 
     Raises:
-        ValueError: something is asked for that the task has of its own.
+        ValueError: an argument asks for what the task already does itself.
     """
     del episode_length
     if action_repeat != 1 or randomization_fn is not None:

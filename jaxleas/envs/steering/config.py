@@ -22,7 +22,7 @@ from jaxleas.terrain.own_files import pinned as pinned_files
 
 
 class MotionLimits(Strict):
-    """What the root may do in one time step (T sec. 3.2.3)."""
+    """Limits on the root's motion in one time step (T sec. 3.2.3)."""
 
     time_step: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     """Time between two configurations of the guide path, T [s]."""
@@ -48,18 +48,18 @@ class RewardWeights(Strict):
     alive: NonNegative = 0.6
     """w_alive, for every valid configuration. The thesis has 1.0."""
     failure: NonNegative = 0.0
-    """Taken off for an invalid configuration at the start of training, beyond what not being alive
-    any more costs. The thesis has none."""
+    """Penalty for an invalid configuration at the start of training, on top of the lost reward for
+    being alive. The thesis has no such penalty."""
     final_failure: NonNegative = 60.0
-    """What `failure` grows to, linearly. At first falling must be cheap, or no policy dares to set
-    foot on a bridge; in the end it must cost much, or turning while walking backwards towards an
-    edge pays although one in ten falls."""
+    """Value to which `failure` grows linearly. At first falling must be cheap, or no policy learns
+    to step onto a bridge; in the end it must cost much, or turning while walking backwards towards
+    an edge pays although one in ten falls."""
 
 
 class LinkShares(Strict):
-    """How often an episode begins at a link of each kind, relative to the others.
+    """Relative frequencies at which an episode begins at a link of each kind.
 
-    Left to chance half of the links would be level ground, and one in ten a narrow bridge, which
+    Drawn uniformly, half of the links would be level ground, and one in ten a narrow bridge, which
     takes the longest to learn.
     """
 
@@ -70,27 +70,27 @@ class LinkShares(Strict):
     obstacles: NonNegative = 0.12
     flat: NonNegative = 0.03
     detour: NonNegative = 0.0
-    """Holes and walls to be walked round (terrain.generator.detour_probability makes them)."""
+    """Holes and walls to walk around (terrain.generator.detour_probability makes them)."""
     cliff: NonNegative = 0.0
     """A goal too high up or too far down: stop. With a share of 0.1 policies also stopped before
     stairs; random goals teach enough of stopping."""
     void: NonNegative = 0.0
-    """A goal where there is no ground: stop; likewise."""
+    """A goal where there is no ground: stop; the same holds for its share."""
 
 
 class TerrainConfig(WorldsConfig):
-    """The arenas that are trained on."""
+    """The terrain that robots train on."""
 
     resolution: Annotated[float, Field(ge=0.01, le=0.2)] = 0.04
     """Side of a height map's cell [m]."""
     shares: LinkShares = LinkShares()
     generator: GeneratorConfig = GeneratorConfig()
     files: tuple[TerrainEntry, ...] = ()
-    """Terrain files of one's own to train on beside the generator's arenas: paths, or
-    `{file: PATH, up: y, scale: 0.001}` with what a file does not say of itself. They train, they
-    never judge."""
+    """The user's own terrain files to train on besides the generator's arenas: paths, or
+    `{file: PATH, up: y, scale: 0.001}` with what a file does not state itself. They are used for
+    training, never for evaluation."""
     files_share: Fraction = 0.0
-    """Share of the starts that fall on these files, each as often as any other."""
+    """Share of the starts that fall on these files, divided evenly among them."""
 
     @model_validator(mode="after")
     def _files_have_a_share(self) -> Self:
@@ -103,11 +103,11 @@ class TerrainConfig(WorldsConfig):
         return self
 
     def pinned(self) -> Self:
-        """Return the same terrain, each file by its absolute path and with its digest."""
+        """Return the same terrain, with the absolute path and digest of each file."""
         return self.model_copy(update={"files": pinned_files(self.files)})
 
     def without_files(self) -> Self:
-        """Return the arenas alone, which have surfaces."""
+        """Return the same terrain without the files: arenas alone, which have surfaces."""
         return self.model_copy(update={"files": (), "files_share": 0.0})
 
 
@@ -126,31 +126,31 @@ class SteeringConfig(TaskConfig):
     """Layout of the local height map: 10 x 14 (T table 3.1), the same and the number of surfaces
     around the robot (T 5.2.3), or 11 x 7 (I sec. III)."""
     height_low: float = -1.4
-    """Heights are clipped from below here, z_min [m] relative to the root."""
+    """Lower bound z_min to which heights are clipped [m], relative to the root."""
     height_high: float = -0.2
-    """Heights are clipped from above here, z_max [m] relative to the root."""
+    """Upper bound z_max to which heights are clipped [m], relative to the root."""
     desired_speed: Positive = 0.1
     """Speed at which the root should move towards the goal, v_desired [m/s]."""
     goal_radius: Positive = 0.2
-    """The goal is reached within this distance [m] (T sec. 3.4.2)."""
+    """Distance within which the goal counts as reached [m] (T sec. 3.4.2)."""
     episode_steps: Count = 250
-    """An episode is cut here [steps]. The thesis has 800: most of it is standing at dead ends, and
-    what is hard, turning and setting foot on the transition, happens in the first hundred."""
+    """Length at which an episode is cut [steps]. The thesis has 800: most of that is standing at
+    dead ends; the hard part, turning and stepping onto the transition, is in the first hundred."""
     near_share: Fraction = 0.5
-    """Share of episodes that begin right before what is to be crossed, where turning is hardest."""
+    """Share of episodes that begin right before the crossing, where turning is hardest."""
     wander_share: Fraction = 0.2
     """Share of episodes that begin with a random goal, as all do once their link is crossed."""
     goal_steps: tuple[Count, Count] = (200, 800)
-    """A goal lasts a random number of steps in this range, or until it is reached."""
+    """Range from which a goal's duration is drawn [steps]; a goal also ends when it is reached."""
     conditions: NamedConditions = STANDARD
-    """What ends an episode where it fails: `reachability` (R), `strict_reachability` (R*),
-    `collision` (C), one `{surrogate: FILE}`, and MODULE:CLASS of one's own, which --allow must
-    repeat on the command line."""
+    """Conditions that end an episode where they fail: `reachability` (R), `strict_reachability`
+    (R*), `collision` (C), one `{surrogate: FILE}`, and MODULE:CLASS of the user's own, which
+    --allow must repeat on the command line."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
 
     def signature(self) -> Signature:
-        """Return the layout's observation, and acceleration and turn rate in the root frame."""
+        """Return the signature: the layout's observation; acceleration and turn rate as action."""
         layout = layout_named(self.observation)
         height_range = (self.height_low, self.height_high)
         mean, deviation = affine_scaling(
@@ -174,17 +174,17 @@ class SteeringConfig(TaskConfig):
         return Signature((observation,), (command,))
 
     def describe(self) -> dict[str, Any]:
-        """Return how to feed an exported policy, and how to obey it."""
+        """Return how to assemble an exported policy's input, and how to apply its command."""
         from jaxleas.envs.steering.description import describe_steering
 
         return describe_steering(self)
 
     def pinned(self) -> Self:
-        """Return the same task, each file that it names by its absolute path and its digest."""
+        """Return the same task, with the absolute path and digest of each file that it names."""
         return self.model_copy(update={"conditions": pinned_conditions(self.conditions)})
 
     def under_standard_conditions(self) -> Self:
-        """Return the same task under R* and C, by which policies are compared."""
+        """Return the same task under R* and C, the conditions under which policies are compared."""
         return self.model_copy(update={"conditions": STANDARD})
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""What an exported steering policy says about itself: how to feed it, and how to obey it."""
+"""The description in an exported steering policy: how to make its input and apply its command."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ COMMAND_UNITS = ["m/s^2", "m/s^2", "m/s^2", "rad/s"]
 
 
 def describe_steering(config: SteeringConfig) -> dict[str, Any]:
-    """Return what a driver must know to feed a policy and to obey it, as plain JSON values."""
+    """Return what a caller must know to use a policy, as plain JSON values."""
     layout = layout_named(config.observation)
     limits = config.limits
     return {

@@ -43,16 +43,16 @@ class SteeringEnv:
 
     The local terrain of a robot is the heights at `points_in_root`: first the observation's grid,
     then the footprint, a finer grid in the trunk's shadow that the conditions need and the policy
-    does not see, and at last whatever else a condition of one's own reads.
+    does not see, and finally any other points that the user's own condition reads.
 
     Attributes:
-        config: of the task.
-        layout: of the observation.
-        robot: that walks.
-        points_in_root: where the local terrain is sampled [m].
-        condition: on local terrain and motion; an episode ends where it fails.
-        foresight: a condition with memory, such as a surrogate of a contact planner; an episode
-            ends where it fails, too. None: nothing is foreseen.
+        config: configuration of the task.
+        layout: layout of the observation.
+        robot: robot that walks.
+        points_in_root: points at which the local terrain is sampled [m].
+        condition: condition on local terrain and motion; an episode ends where it fails.
+        foresight: condition with memory, such as a surrogate of a contact planner; an episode also
+            ends where it fails. None: there is no such condition.
     """
 
     action_size = ACTION_SIZE
@@ -67,28 +67,28 @@ class SteeringEnv:
         """Prepare the task.
 
         Args:
-            config: of the task.
-            condition: that ends an episode, in place of all that the configuration names; a plain
-                callable reads the heights at the grid and the footprint.
-            foresight: that ends an episode as well, out of what it remembers of it, in place of
+            config: configuration of the task.
+            condition: condition that ends an episode, in place of all those that the configuration
+                names; a plain callable reads the heights at the grid and the footprint.
+            foresight: condition with a memory of the episode that also ends it, in place of the
                 one that the configuration names.
-            allow: each MODULE:CLASS of `config.conditions` that a person has named.
+            allow: user's own code that may be run, as MODULE:CLASS; those of `config.conditions`.
 
         Raises:
-            InputError: a condition that the configuration names cannot be had.
+            InputError: a condition that the configuration names cannot be made.
         """
         self.config = config
         self.layout = layout_named(config.observation)
         self.robot = load_robot(config.robot)
         self.height_range = (config.height_low, config.height_high)
-        # What is looked at: places kept for the motion in the observation, then its grid.
+        # Points of the observation: places kept for the motion, then its grid.
         self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
         sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
         if condition is None:
             judges = make_judges(config.conditions, self.robot, sampled, config, allow)
             condition, foresight = judges.condition, foresight or judges.foresight
         self.foresight = foresight
-        # What a step is judged by: conditions ask for few of the points.
+        # Points that the conditions read: only a few of all.
         self._judge = with_points(condition, sampled)
         self._judged = np.asarray(self._judge.points_in_root, np.float64)
         self.points_in_root = extended(sampled, self._judged)
@@ -112,7 +112,7 @@ class SteeringEnv:
         return self._write(columns, *seen_motion(motion, goal))
 
     def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
-        """Return what robots see: as `observe` of their local terrain, in one pass."""
+        """Return the robots' observation: as `observe` on their local terrain, in one pass."""
         motion = state.motion
         return atlas.heights_around(
             state.plan.map_index,
@@ -124,7 +124,7 @@ class SteeringEnv:
         )
 
     def _write(self, columns: Array, *seen: Array) -> Array:
-        """Return the observation of heights, behind places that are kept for the motion."""
+        """Return the observation of heights, after the columns that are kept for the motion."""
         observation = write_observation(columns, *seen, height_range=self.height_range)
         if not self.layout.counts_surfaces:
             return observation
@@ -136,9 +136,9 @@ class SteeringEnv:
         """Return the state at the beginning of an episode.
 
         Args:
-            motion: of the root.
-            plan: of the episode.
-            memory: as the foresight's `begin` returned it; nothing without foresight.
+            motion: motion of the root.
+            plan: plan of the episode.
+            memory: memory that the foresight's `begin` returned; empty without foresight.
         """
         zero = jnp.zeros_like(plan.map_index)
         return SteeringState(motion, plan, goal_index=zero, goal_age=zero, step=zero, memory=memory)
@@ -161,9 +161,9 @@ class SteeringEnv:
     def _judge_all(
         self, atlas: Atlas, state: SteeringState, motion: RootMotion
     ) -> tuple[Float[Array, "*batch"], Any]:
-        """Return the margin of all that can end an episode, and the foresight's memory."""
+        """Return the margin of all conditions that end an episode, and the foresight's memory."""
         where = state.plan.map_index, motion.position, motion.yaw
-        # In the pass over the heights: whoever asks for the margin would judge them anew.
+        # Computed in the pass over the heights: outside it, each use of the margin would repeat it.
         margin = atlas.heights_around(
             *where, self._judged, lambda heights: self._judge(heights, motion)
         )
@@ -189,8 +189,8 @@ class SteeringEnv:
         Args:
             atlas: terrains.
             params: weights of the reward.
-            state: of the episode.
-            action: the network's, in [-1, 1]^4.
+            state: state of the episode.
+            action: action of the network, in [-1, 1]^4.
         """
         config = self.config
 
@@ -227,7 +227,7 @@ class SteeringEnv:
 
 def _pick(values: Array, index: Int[Array, "*batch"]) -> Array:
     """Return entry `index` along the goals' axis (the first after the batch axes)."""
-    # A choice between GOALS entries: cheaper on every backend than a gather of one each.
+    # Selecting among GOALS entries is cheaper on every backend than gathering one each.
     entries = [values[(slice(None),) * index.ndim + (number,)] for number in range(GOALS)]
     which = index.reshape(index.shape + (1,) * (entries[0].ndim - index.ndim))
     picked = entries[0]

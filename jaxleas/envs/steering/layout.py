@@ -1,4 +1,4 @@
-"""Where the policy looks: grids of points around the root, and what an observation holds."""
+"""Layouts of the observation: grids of points around the root, and the order of the values."""
 
 from dataclasses import dataclass, replace
 
@@ -16,14 +16,14 @@ class ObservationLayout:
 
     An observation is [velocity x, y, z in the root frame [m/s], angle to the goal [rad], heights
     of the grid points relative to the root [m], clipped], heights row by row from the rearmost to
-    the foremost, each row from right (y < 0) to left (y > 0); then, where the layout has it, the
+    the foremost, each row from right (y < 0) to left (y > 0); then, if the layout has it, the
     number of surfaces around the root (`surface_count`).
 
     Attributes:
-        name: of the layout, written into exported policies.
-        rows: x of the grid's rows in the root frame, ascending [m].
-        columns: y of the grid's columns in the root frame, ascending and symmetric [m].
-        counts_surfaces: whether the number of surfaces is seen.
+        name: name of the layout, written into exported policies.
+        rows: x coordinates of the grid's rows in the root frame, ascending [m].
+        columns: y coordinates of the grid's columns in the root frame, ascending and symmetric [m].
+        counts_surfaces: whether the observation has the number of surfaces.
     """
 
     name: str
@@ -58,22 +58,23 @@ class ObservationLayout:
 
 
 def _cells(step: float, first: int, last: int) -> tuple[float, ...]:
-    """Return the centres of cells of width `step` number first..last; cell 0 begins at the root."""
+    """Return the centres of cells first..last of width `step`; cell 0 begins at the root."""
     return tuple(round(step * (index + 0.5), 6) for index in range(first, last + 1))
 
 
 # Each height stands for a cell, and the cells tile the ground with no gap at the root: what counts
 # most, whether there is ground under the root, lies between two rows. (Rows at whole steps leave a
-# stripe of 0.32 m unseen there, and policies crept over edges they could not see.)
+# stripe of 0.32 m unseen there, and policies walked over edges that they could not see.)
 
-# T sec. 3.2.2: 7 rows ahead, 3 behind, 7 columns a side, about 110, 50 and 60 cm.
+# T sec. 3.2.2: 7 rows ahead, 3 behind, 7 columns per side, about 110, 50 and 60 cm.
 THESIS144 = ObservationLayout(
     name="thesis144",
     rows=(*_cells(0.17, -3, -1), *_cells(0.15, 0, 6)),
     columns=_cells(0.09, -7, 6),
 )
 
-# T sec. 5.2.3: for the planners that choose surfaces, their number around the robot besides.
+# T sec. 5.2.3: the same, and the number of surfaces around the robot, for planners that choose
+# surfaces.
 THESIS145 = replace(THESIS144, name="thesis145", counts_surfaces=True)
 
 # I sec. III-A: 9 rows ahead, 2 behind, 7 columns across.
@@ -90,10 +91,10 @@ MIRROR_ACTION_SIGN = np.array([1.0, -1.0, 1.0, -1.0], dtype=np.float32)
 
 
 def layout_named(name: str) -> ObservationLayout:
-    """Return the observation layout of that name.
+    """Return the observation layout with this name.
 
     Raises:
-        InputError: there is none.
+        InputError: there is no such layout.
     """
     if name not in _LAYOUTS:
         raise InputError(f"no observation layout is called {name!r}; there are {list(_LAYOUTS)}")

@@ -1,4 +1,4 @@
-"""How an action moves the root (T eq. 3.2, 3.3)."""
+"""Motion of the root under an action (T eq. 3.2, 3.3)."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -26,13 +26,13 @@ def integrate(
 ) -> RootMotion:
     """Move the root for one time step, in the order of T eq. 3.3.
 
-    (a) position += velocity T, with the velocity of before; (b) velocity += acceleration T, its
+    (a) position += velocity T, with the previous velocity; (b) velocity += acceleration T, its
     norm bounded by v_max; (c) yaw += omega T.
 
     Args:
-        motion: of the root.
+        motion: motion of the root.
         command: acceleration in the root frame [m/s^2] and turn rate [rad/s].
-        limits: time step and bounds.
+        limits: limits of the motion, and the time step.
     """
     step = limits.time_step
     acceleration_in_world = rotate_by_yaw(command[..., :3], motion.yaw)

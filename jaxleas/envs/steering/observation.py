@@ -1,4 +1,4 @@
-"""What the policy sees (T eq. 3.1)."""
+"""The observation of the policy (T eq. 3.1)."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -20,13 +20,13 @@ def direction_to_goal(
 
 
 def seen_motion(motion: RootMotion, goal: Float[Array, "*batch 2"]) -> tuple[Array, ...]:
-    """Return what an observation tells of motion and goal: `MOTION_SIZE` numbers a robot.
+    """Return the part of an observation about motion and goal: `MOTION_SIZE` numbers per robot.
 
-    The velocity in the root frame [m/s] and the angle to the goal [rad].
+    They are the velocity in the root frame [m/s] and the angle to the goal [rad].
 
     Args:
-        motion: of the root.
-        goal: in the world [m].
+        motion: motion of the root.
+        goal: position of the goal in the world frame [m].
     """
     toward, _ = direction_to_goal(motion, goal)
     toward_in_root = rotate_by_yaw(toward, -motion.yaw)
@@ -43,13 +43,13 @@ def write_observation(
     """Assemble an observation, in physical units: s = [v, angle to the goal, heights] (T eq. 3.1).
 
     Args:
-        columns: `MOTION_SIZE` values that are written over, then the heights of the layout's grid
-            points relative to the root [m]: joining arrays would cost a copy.
-        seen: of motion and goal.
-        height_range: z_min and z_max, between which heights are clipped [m].
+        columns: `MOTION_SIZE` values that are overwritten, then the heights of the layout's grid
+            points relative to the root [m]; joining arrays would cost a copy.
+        seen: values about motion and goal, from `seen_motion`.
+        height_range: bounds z_min and z_max to which heights are clipped [m].
     """
     low, high = height_range
-    # Chosen, not clipped: heights are finite, and `clip` looks after NaN at twice the price.
+    # `where`, not `clip`: heights are finite, and `clip` also handles NaN at twice the cost.
     observation = jnp.where(columns > low, columns, low)
     observation = jnp.where(observation < high, observation, high)
     return observation.at[..., :MOTION_SIZE].set(jnp.stack(seen, axis=-1))

@@ -1,7 +1,7 @@
-"""Where a robot can stand on terrain of one's own, and which goals are a walk away.
+"""Places where a robot can stand on the user's own terrain, and goals within walking distance.
 
-Nobody says where to cross such terrain, so it is searched once on the host: places where R* and C
-hold, and for each some others at a walking distance. Starts and goals are drawn from these tables.
+Such terrain does not state its crossings, so it is searched once on the host: places where R* and C
+hold, and for each some others within walking distance. Starts and goals come from these tables.
 """
 
 from collections.abc import Sequence
@@ -22,25 +22,25 @@ from jaxleas.types import InputError, RootMotion
 
 NEAREST, FARTHEST = 1.5, 6.0
 """Distance from a start to its goal, and from goal to goal [m]."""
-MOST_PLACES = 16_384  # of each file
+MOST_PLACES = 16_384  # per file
 GOALS_A_PLACE = 16
 SPREAD = 0.2  # starts lie around their place in a square of this half side [m]
 _HEADINGS = np.linspace(-np.pi, np.pi, 8, endpoint=False)
 _AT_ONCE = 4096  # places judged in one compiled call
-_ROUNDS = 32  # of drawing goals
+_ROUNDS = 32  # attempts at drawing goals
 
 
 @struct.dataclass
 class OwnTerrain:
-    """Places to stand at on the maps of files; a pytree.
+    """Places to stand at on the maps of terrain files; a pytree.
 
     Attributes:
-        share: share of the starts that fall on files, each file as often as any other.
+        share: share of the starts that fall on files, divided evenly among them.
         map_index: map of each file in the atlas.
         first: index of each file's first place.
         count: number of each file's places.
         place: place to stand at, x and y [m].
-        goals: indices of places a walk away from each place.
+        goals: indices of places within walking distance of each place.
     """
 
     share: Float[Array, ""]
@@ -56,10 +56,10 @@ class OwnStarts:
     """Starts and goals on files, drawn for every candidate.
 
     Attributes:
-        chosen: whether the candidate starts on a file at all.
-        map_index: map in the atlas.
-        start: place of the start [m].
-        goals: goals, one after another [m].
+        chosen: whether the candidate starts on a file.
+        map_index: index of the map in the atlas.
+        start: position of the start [m].
+        goals: positions of the goals, one after another [m].
     """
 
     chosen: Bool[Array, " candidates"]
@@ -71,16 +71,16 @@ class OwnStarts:
 def make_own_terrain(
     robot: Robot, maps: Sequence[tuple[str, HeightMap]], share: float, first_map: int
 ) -> OwnTerrain:
-    """Search maps for places to stand at.
+    """Search height maps for places to stand at.
 
     Args:
-        robot: robot that is to stand there.
+        robot: robot that has to stand there.
         maps: name and height map of each file.
         share: share of the starts that fall on files.
         first_map: index of the first of the maps in the atlas.
 
     Raises:
-        InputError: on a map there is no room for a start and a goal.
+        InputError: a map has no room for a start and a goal.
     """
     places, goals, counts = [], [], []
     for number, (name, height_map) in enumerate(maps):
@@ -108,13 +108,13 @@ def make_own_terrain(
 
 
 def draw_own_starts(own: OwnTerrain, key: Key[Array, ""], count: int, goals: int) -> OwnStarts:
-    """Draw candidates for starts on files: a file, a place on it, and goals a walk apart.
+    """Draw candidates for starts on files: a file, a place on it, and goals not far from it.
 
     Args:
         own: places to stand at.
         key: random key, consumed here.
         count: number of candidates.
-        goals: number of goals of each.
+        goals: number of goals per candidate.
     """
     share_key, file_key, place_key, spread_key, goal_key = jax.random.split(key, 5)
     chosen = jax.random.uniform(share_key, (count,)) < own.share
@@ -172,8 +172,8 @@ def _standing_places(
 def _goals_of(
     places: Float[np.ndarray, "N 2"], chance: np.random.Generator
 ) -> Int[np.ndarray, "N choices"]:
-    """Return for each place others that are a walk away, in any direction; -1 where none is."""
-    # Starts lie around their place: what is left is a walk away from all of the square.
+    """Return, for each place, others within walking distance in any direction; -1 for no place."""
+    # Starts lie around their place: the distances hold from everywhere in that square.
     corner = SPREAD * np.sqrt(2.0) + 1e-3
     nearest, farthest = NEAREST + corner, FARTHEST - corner
     goals = np.full((len(places), GOALS_A_PLACE), -1, np.int64)
@@ -191,10 +191,10 @@ def _goals_of(
         )
         goals[rows, have[rows]] = other[rows]
         have[rows] += 1
-    for row in np.flatnonzero(have == 0):  # chance found none: look at all
+    for row in np.flatnonzero(have == 0):  # none was drawn at random: search all
         distance = np.linalg.norm(places - places[row], axis=1)
         others = np.flatnonzero((distance >= nearest) & (distance <= farthest))[:GOALS_A_PLACE]
         goals[row, : len(others)], have[row] = others, len(others)
-    # Places with few goals have them several times.
+    # Places with few goals list them several times.
     again = np.arange(GOALS_A_PLACE) % np.maximum(have, 1)[:, None]
     return np.take_along_axis(goals, again, axis=1)

@@ -32,11 +32,11 @@ class RewardParams:
 
     @classmethod
     def at(cls, numbers: Mapping[str, Any], progress: Any) -> "RewardParams":
-        """Return the weights at some time of a training: that of a failure grows linearly.
+        """Return the weights at some time during training: that of a failure grows linearly.
 
         Args:
-            numbers: the fields of `RewardWeights`, as reward.NAME.
-            progress: share of the training that is done.
+            numbers: fields of `RewardWeights` by name, as reward.NAME.
+            progress: completed share of the training, 0 to 1.
         """
         weights = {name: numbers[f"reward.{name}"] for name in cls.__annotations__}
         growth = numbers["reward.final_failure"] - weights["failure"]
@@ -59,9 +59,9 @@ def reward(
     w_failure, which the thesis does not have.
 
     Args:
-        params: the weights.
-        config: of the task: bounds and desired speed.
-        motion: of the root after the step.
+        params: weights of the terms.
+        config: configuration of the task: bounds and desired speed.
+        motion: motion of the root after the step.
         command: acceleration [m/s^2] and turn rate [rad/s].
         toward_goal: horizontal unit vector to the goal.
         valid: 1 where the configuration satisfies the conditions, else 0.

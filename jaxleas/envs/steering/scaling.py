@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import MOTION_SIZE
 
-MOST_SURFACES = 8.0  # around a robot, about: on rubble
+MOST_SURFACES = 8.0  # about the most around a robot, on rubble
 
 
 def affine_scaling(
@@ -16,8 +16,8 @@ def affine_scaling(
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, " size"]]:
     """Return mean and deviation that map an observation's ranges onto [-1, 1].
 
-    Fixed from the task's own bounds, not from data: a running normaliser shrinks the rare heights
-    that matter (field notes: 89 % success instead of 98 %).
+    They are fixed from the task's own bounds, not from data: a running normaliser shrinks the rare
+    heights that matter (field notes: 89 % success instead of 98 %).
     """
     low, high = height_range
     mean, deviation = np.zeros(size, np.float32), np.full(size, max_speed, np.float32)

@@ -28,23 +28,23 @@ def draw_starts(
 ) -> Starts:
     """Draw candidates for starts: a random link, anywhere in its start area, any heading.
 
-    A share of them falls on terrain files instead, if the world has any: anywhere, with goals a
-    walk away.
+    A share of them falls on terrain files instead, if the world has any: anywhere, with goals
+    within walking distance.
 
     Every call draws anew, so no start is ever replayed. Candidates that violate the condition, or
-    whose goal nobody could stand at (in a box, beside the ground), are kept in the arrays (shapes
-    are fixed) but never used.
+    whose goal is no place to stand at (inside a box, off the ground), are kept in the arrays
+    (shapes are fixed) but never used.
 
     Args:
-        env: the task.
+        env: steering environment.
         world: terrains and links.
-        key: consumed here.
+        key: random key, consumed here.
         count: number of candidates.
-        wander_share: share of the starts with a random goal; the configuration's if None.
+        wander_share: share of the starts with a random goal; None: that of the configuration.
     """
     if wander_share is None:
         wander_share = env.config.wander_share
-    # The first five keys are the same however many follow.
+    # The first five keys do not depend on the number of further keys.
     needs_more = env.foresight is not None or world.own is not None
     keys = jax.random.split(key, 8 if needs_more else 5)
     link_key, place_key, motion_key, goal_key, wander_key, *further = keys
@@ -80,14 +80,14 @@ def draw_starts(
 def begin(
     env: SteeringEnv, world: World, keys: tuple[Key[Array, ""], Key[Array, ""]], count: int, of: int
 ) -> tuple[SteeringState, Float[Array, "count size"]]:
-    """Return valid first states of episodes, and what is seen in them.
+    """Return valid first states of episodes, and their observations.
 
     Args:
-        env: the task's environment.
+        env: steering environment.
         world: terrains and links.
-        keys: randomness of the candidates, and of the choice among them; consumed here.
+        keys: random keys for the candidates and for the choice among them, consumed here.
         count: number of states.
-        of: number of candidates that they are chosen from.
+        of: number of candidates from which they are chosen.
     """
     pool_key, take_key = keys
     state, _ = take(pool_of(draw_starts(env, world, pool_key, of)), take_key, count)
@@ -104,11 +104,11 @@ def _draw_motion(
     yaw_key, speed_key, height_key = jax.random.split(motion_key, 3)
     shape = (len(link),)
     yaw = jax.random.uniform(yaw_key, shape, minval=-jnp.pi, maxval=jnp.pi)
-    # Half of the robots stand; the others walk the way they look (I sec. IV-B).
+    # Half of the robots stand; the others walk in the direction that they face (I sec. IV-B).
     speed = jnp.maximum(jax.random.uniform(speed_key, shape, minval=-1.0), 0.0)
     speed = speed * env.config.desired_speed
-    # A low root is what stairs down ask for, and a policy that has never been low does not find
-    # out; users' starts are not exact either.
+    # Stairs down require a low root, which a policy that has never been low does not discover;
+    # users' starts are not exact either.
     low, high = env.robot.start_heights
     spread = jax.random.uniform(height_key, (*shape, 1), minval=low, maxval=high)
     return RootMotion(
@@ -123,7 +123,7 @@ def _draw_motion(
 def _put_on_files(
     env: SteeringEnv, world: World, own: OwnStarts, plan: Plan, motion: RootMotion, key: Array
 ) -> tuple[Plan, RootMotion]:
-    """Return plans and motions with those on files put in where a candidate starts on one."""
+    """Return plans and motions, replaced where a candidate starts on a terrain file."""
     low, high = env.robot.start_heights
     spread = jax.random.uniform(key, (len(own.chosen), 1), minval=low, maxval=high)
     position = _stand(env, world, own.map_index, own.start).at[:, 2:].add(spread)
@@ -151,7 +151,7 @@ def _stand(
 ) -> Float[Array, "batch 3"]:
     """Return root positions at walking height over the ground."""
     ground = world.atlas.height_at(map_index, horizontal[:, None, :])
-    # A root measured from the void would see the void at walking height and pass for valid.
+    # A root at walking height over the void would see the void as ground and count as valid.
     ground = jnp.where(is_ground(ground), ground, 0.0)
     return jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
 

@@ -1,4 +1,4 @@
-"""The values of the steering environment that evolve."""
+"""The evolving values of the steering environment."""
 
 from typing import Any
 
@@ -14,14 +14,15 @@ GOALS = 4  # goals drawn ahead for an episode: more than its steps can use up
 
 @struct.dataclass
 class Plan:
-    """What an episode asks: where the robot is and which goals it is given, one after another.
+    """The plan of an episode: its terrain and the goals that it has, one after another.
 
-    Drawn whole at the start of an episode, so that a step needs no randomness of its own.
+    It is drawn whole at the start of an episode, so that a step needs no randomness of its own.
 
     Attributes:
-        map_index: terrain of the atlas.
-        goals: in the world [m]: the first across a link, the others anywhere in the arena.
-        goal_steps: after how many steps each goal is replaced by the next.
+        map_index: index of the terrain in the atlas.
+        goals: positions of the goals in the world [m]: the first across a link, the others
+            anywhere in the arena.
+        goal_steps: number of steps after which each goal is replaced by the next.
     """
 
     map_index: Int[Array, "*batch"]
@@ -34,12 +35,12 @@ class SteeringState:
     """One episode in progress.
 
     Attributes:
-        motion: of the root.
-        plan: of the episode.
-        goal_index: which goal is sought now.
-        goal_age: steps since that goal was given.
-        step: steps since the episode began.
-        memory: what the environment's foresight remembers; empty without one.
+        motion: motion of the root.
+        plan: plan of the episode.
+        goal_index: index of the current goal.
+        goal_age: number of steps since that goal was set.
+        step: number of steps since the episode began.
+        memory: memory of the environment's foresight; empty without one.
     """
 
     motion: RootMotion
@@ -52,7 +53,7 @@ class SteeringState:
 
 @struct.dataclass
 class SteeringResult(StepResult):
-    """What a step tells, besides the next state.
+    """The result of a step, besides the next state.
 
     Attributes:
         margin: margin of the condition [m], positive where satisfied.
@@ -63,10 +64,11 @@ class SteeringResult(StepResult):
 
 @struct.dataclass
 class SeenResult(SteeringResult):
-    """What a step tells, and what is seen after it.
+    """The result of a step, and the observation after it.
 
     Attributes:
-        observation: of the state reached [physical units]; the last one of an episode, too.
+        observation: observation of the state reached [physical units], also at the end of an
+            episode.
     """
 
     observation: Float[Array, "*batch size"]

@@ -1,4 +1,4 @@
-"""How many surfaces lie around the robot: one number beside the heights (T 5.2.3)."""
+"""The number of surfaces around the robot, observed besides the heights (T 5.2.3)."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -6,9 +6,9 @@ from jax import Array
 from jaxtyping import Float
 
 WINDOW = 0.8
-"""Edge of the square in which a foot may land (T 5.2.3) [m]."""
+"""Side of the square in which a foot may land (T 5.2.3) [m]."""
 STEP = 0.015
-"""Neighbouring heights that differ by more [m] lie on two surfaces."""
+"""Height difference above which neighbouring points lie on two surfaces [m]."""
 
 
 def surface_count(
@@ -19,15 +19,15 @@ def surface_count(
 ) -> Float[Array, "*batch"]:
     """Return the number of surfaces within reach in a square around the root, from its heights.
 
-    Neighbours on the grid that hardly differ in height lie on one surface. What hangs together is
+    Neighbours on the grid that hardly differ in height lie on one surface. Connected regions are
     counted by Euler's formula: cells - joints + closed squares of four; so a surface that lies
     within another one is not counted (a hole takes one off).
 
     Args:
-        heights: of the grid relative to the root, row by row [m].
-        rows: x of the grid's rows [m].
-        columns: y of the grid's columns [m].
-        height_range: what lies outside it is no foothold [m].
+        heights: heights of the grid points relative to the root, row by row [m].
+        rows: x coordinates of the grid's rows [m].
+        columns: y coordinates of the grid's columns [m].
+        height_range: range of heights that count as footholds [m].
     """
     low, high = height_range
     grid = heights.reshape(*heights.shape[:-1], len(rows), len(columns))

@@ -1,4 +1,4 @@
-"""Steering as a task of the house: its worlds, its starts, and the growing cost of a failure."""
+"""Steering as a task: its worlds, its starts, and the growing cost of a failure."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Self
@@ -23,10 +23,10 @@ NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
 
 
 class Steering(Task):
-    """A root that walks towards goals over terrain it sees a little of (T ch. 3).
+    """A root that walks towards goals over terrain that it sees only locally (T ch. 3).
 
     Attributes:
-        env: motion, observation, conditions and reward.
+        env: steering environment: motion, observation, conditions and reward.
     """
 
     Config = SteeringConfig
@@ -45,11 +45,11 @@ class Steering(Task):
 
         Args:
             config: configuration of the task.
-            worlds: configuration of its terrain; the default one if None.
+            worlds: configuration of its terrain; None: the default one.
             condition: condition that ends an episode, in place of the configuration's.
-            foresight: condition with memory that ends an episode, too, such as a surrogate of a
+            foresight: condition with memory that also ends an episode, such as a surrogate of a
                 contact planner.
-            allow: code of the user's own that may be run, each MODULE:CLASS.
+            allow: user's own code that may be run, as MODULE:CLASS.
         """
         super().__init__(config, worlds or TerrainConfig())
         self.env = SteeringEnv(config, condition, foresight, allow)
@@ -76,10 +76,10 @@ class Steering(Task):
     def make_world(self, seeds: Sequence[int], examined: bool) -> World:
         """Generate arenas, rasterise them, and list their links.
 
-        Terrain files are trained on, too; they never judge.
+        Terrain files are used for training, too, but never for the examination.
 
-        Those of the examination have no boxes, and crossings only: every goal can be reached, so
-        that the score has room to the top and the best policy can be told from the second best.
+        Arenas of the examination have no boxes, and crossings only: every goal can be reached, so
+        that the score has room to the top and the best policy can be distinguished from the second.
 
         Raises:
             InputError: no arena has a link to cross.
@@ -99,7 +99,7 @@ class Steering(Task):
     ) -> Starts:
         """Draw candidates: a random link, anywhere in its start area, any heading.
 
-        In training some begin with a random goal; in the examination all have a link to cross.
+        In training some starts have a random goal; in the examination all have a link to cross.
         """
         return draw_starts(self.env, world, key, count, 0.0 if examined else None)
 
@@ -109,7 +109,7 @@ class Steering(Task):
         return state.replace(step=step)  # type: ignore[attr-defined]
 
     def weights(self, numbers: Mapping[str, Any], progress: Any) -> RewardParams:
-        """Return the reward's weights, of which a failure's grows linearly with the training."""
+        """Return the reward's weights; that of a failure grows linearly during training."""
         return RewardParams.at(numbers, progress)
 
     def advance(
@@ -125,9 +125,9 @@ class Steering(Task):
         return self.env.advance(world.atlas, weights, state, action)
 
     def look(self, world: World, state: SteeringState) -> Float[Array, "*batch size"]:
-        """Return what robots see of the terrain, of their motion and of the goal."""
+        """Return the robots' observation of terrain, motion and goal."""
         return self.env.look(world.atlas, state)
 
     def examination(self, held_out: Any) -> Examination:
-        """Return the examination: links to cross, the success of all of them."""
+        """Return the examination: links to cross, with the success over all of them."""
         return Examination(held_out.starts, held_out.steps)

@@ -1,4 +1,4 @@
-"""What the robots stand in: an atlas of terrains and the links to cross on them."""
+"""The world of the robots: an atlas of terrains and the links to cross on them."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -23,8 +23,8 @@ from jaxleas.types.errors import InputError
 DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
 KINDS = tuple(LinkShares.model_fields)
 """Kinds of links: the groups of an episode's starts."""
-MOST_CELLS = 2**29  # of an atlas, its padding included: two gibibytes
-NEAR = 0.8  # depth of the strip that counts as near to what is to be crossed [m]
+MOST_CELLS = 2**29  # in an atlas, including padding: two gibibytes
+NEAR = 0.8  # depth of the strip that counts as near to the crossing [m]
 
 
 @struct.dataclass
@@ -32,15 +32,17 @@ class World:
     """Terrains and tasks; a pytree, so that it can live on the device and be swept.
 
     Attributes:
-        atlas: the height maps.
-        map_index: of each link's arena in the atlas.
-        start_area: x_min, x_max, y_min, y_max where a link's crossing starts [m].
-        near_area: the strip of it next to what is to be crossed [m].
-        goal_area: likewise where it ends [m].
-        arena_area: likewise of each link's whole arena, for random goals [m].
+        atlas: height maps.
+        map_index: index of each link's arena in the atlas.
+        start_area: bounds x_min, x_max, y_min, y_max of the area where a link's crossing starts
+            [m].
+        near_area: bounds of the strip of that area next to the crossing [m].
+        goal_area: bounds of the area where a link's crossing ends [m].
+        arena_area: bounds of each link's whole arena, for random goals [m].
         kind: number of each link's kind, an index of `KINDS`.
-        crossable: whether the goal can be reached at all; before a dead end it cannot.
-        cumulative_share: of the starts that fall on each link and those before it; ends at 1.
+        crossable: whether the goal can be reached; at a dead end it cannot.
+        cumulative_share: share of the starts that fall on each link and those before it; it ends
+            at 1.
         own: places to start from on terrain files; None: there are no such files.
     """
 
@@ -58,12 +60,12 @@ class World:
 
 @dataclass(frozen=True)
 class OwnMaps:
-    """Terrain files to train on beside the arenas.
+    """Terrain files to train on besides the arenas.
 
     Attributes:
-        maps: name and height map of each.
-        share: share of the starts that fall on them.
-        robot: robot that must find room to stand there.
+        maps: name and height map of each file.
+        share: share of the starts that fall on the files.
+        robot: robot for which there must be room to stand.
     """
 
     maps: Sequence[tuple[str, HeightMap]]
@@ -80,15 +82,15 @@ def make_world(
     """Rasterise arenas into one atlas and list their links.
 
     Args:
-        arenas: each with at least one link among them.
-        resolution: of the height maps [m].
+        arenas: arenas with at least one link among them.
+        resolution: side of a height map's cell [m].
         shares: relative share of starts by kind of link, split evenly among the links of a kind;
-            without it every link is as likely as any other, and dead ends are left out.
-        files: terrain files that are trained on, too; None: none.
+            None: every link is equally likely, and dead ends are left out.
+        files: terrain files to train on as well; None: no files.
 
     Raises:
-        InputError: no arena has a link, or none of a kind with a share; a file has no room to
-            stand, or all maps together are too large.
+        InputError: no arena has a link, or no link is of a kind with a share; a file has no room
+            to stand; or all maps together are too large.
     """
     maps = [rasterise(arena.scene, resolution) for arena in arenas]
     links = [
@@ -103,7 +105,7 @@ def make_world(
     extents = [each.extent for each in maps]
     own = None
     if files is not None:
-        # Near the origin: numbers of 32 bits are coarse where a survey's coordinates lie.
+        # Near the origin, because float32 is coarse at the coordinates of a survey.
         near = [(name, replace(each, origin=(0.0, 0.0))) for name, each in files.maps]
         _require_room(maps, near)
         own = make_own_terrain(files.robot, near, files.share, first_map=len(maps))
@@ -137,7 +139,7 @@ def _require_room(arenas: Sequence[HeightMap], files: Sequence[tuple[str, Height
 
 
 def _near(link: Link) -> tuple[float, ...]:
-    """Return the last stretch of a start area before what is to be crossed."""
+    """Return the strip of a start area right before the crossing."""
     area = np.array(link.start_area)
     for axis, direction in enumerate(link.direction):
         low, high = 2 * axis, 2 * axis + 1

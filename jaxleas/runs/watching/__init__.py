@@ -1,4 +1,4 @@
-"""Whoever watches a run: TensorBoard, Weights & Biases, MLflow, all told the same rows."""
+"""Watchers of a run: TensorBoard, Weights & Biases, MLflow; all receive the same rows."""
 
 from jaxleas.runs.watching.audience import Audience
 from jaxleas.runs.watching.catalogue import WATCHERS, open_watchers, require_watchers

@@ -1,4 +1,4 @@
-"""All watchers of a run, each behind a thread of its own."""
+"""All watchers of a run, each with its own thread."""
 
 import queue
 import threading
@@ -10,18 +10,18 @@ from typing import Any
 from jaxleas.runs.watching.watcher import Status, Watcher
 
 MOST_WAITING = 10_000
-"""Rows that wait for a slow watcher; later ones it never sees."""
+"""Number of rows that wait for a slow watcher; it never receives later ones."""
 FAREWELL = 30.0
-"""Time for the watchers to finish when the run ends [s]."""
+"""Time that the watchers have to finish when the run ends [s]."""
 
 Call = Callable[[], None]
 
 
 class Audience:
-    """Tells every watcher what the run logs, without ever waiting for one or failing with it.
+    """Group of watchers that receive what the run logs; it never waits for them or fails with them.
 
-    A watcher that fails is named in one sentence and told nothing more. One that cannot follow
-    loses rows, which is said once. `metrics.jsonl` holds every row all the same.
+    A watcher that fails is named in one sentence and receives nothing more. A watcher that is too
+    slow loses rows, which is reported once. `metrics.jsonl` holds every row in any case.
     """
 
     def __init__(
@@ -30,29 +30,30 @@ class Audience:
         say: Callable[[str], None],
         farewell: float = FAREWELL,
     ) -> None:
-        """Take seats.
+        """Prepare a thread for each watcher.
 
         Args:
-            watchers: by name.
-            say: told a sentence about a watcher that fails; called from other threads.
-            farewell: time for all of them to finish at the end [s].
+            watchers: watchers by name.
+            say: function that is called with a sentence about a watcher that fails, from other
+                threads.
+            farewell: time that all of them have to finish at the end [s].
         """
         self._seats = [_Seat(name, watcher, say) for name, watcher in watchers.items()]
         self._say = say
         self._farewell = farewell
 
     def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
-        """Tell all that the run begins."""
+        """Notify all watchers that the run begins."""
         for seat in self._seats:
             seat.tell(partial(seat.watcher.begin, config, name, resumed_after))
 
     def row(self, step: int, metrics: Mapping[str, float]) -> None:
-        """Tell all a row."""
+        """Send a row to all watchers."""
         for seat in self._seats:
             seat.tell(partial(seat.watcher.row, step, metrics))
 
     def end(self, status: Status) -> None:
-        """Tell all that the run is over; wait a moment for them to finish."""
+        """Notify all watchers that the run is over; wait a moment for them to finish."""
         deadline = time.monotonic() + self._farewell
         for seat in self._seats:
             seat.tell(partial(seat.watcher.end, status))
@@ -66,7 +67,7 @@ class Audience:
 
 
 class _Seat:
-    """One watcher, its thread and what it has yet to be told."""
+    """One watcher, its thread and the calls still to be made."""
 
     def __init__(self, name: str, watcher: Watcher, say: Callable[[str], None]) -> None:
         self.name, self.watcher = name, watcher
@@ -88,7 +89,7 @@ class _Seat:
                 self._say(f"{self.name} cannot follow and loses rows: metrics.jsonl holds them")
 
     def close(self) -> None:
-        """Say that nothing more will come, even to one with no room to be told."""
+        """Mark the end of the calls, even for a watcher whose queue is full."""
         while self._thread.is_alive():
             try:
                 return self._waiting.put_nowait(None)
@@ -103,11 +104,11 @@ class _Seat:
         while (call := self._waiting.get()) is not None:
             try:
                 call()
-            except Exception as error:  # whatever somebody else's client raises
+            except Exception as error:  # a third-party client may raise anything
                 self._gone = True
                 reason = " ".join(str(error).split())[:200] or type(error).__name__
                 self._say(
-                    f"{self.name} failed and is told nothing more: {reason} (training goes on,"
+                    f"{self.name} failed and receives nothing more: {reason} (training continues,"
                     " metrics.jsonl holds every row)"
                 )
                 return

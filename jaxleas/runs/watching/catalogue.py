@@ -8,8 +8,8 @@ from types import ModuleType
 from jaxleas.runs.watching.watcher import Watcher
 from jaxleas.types.errors import InputError
 
-# Name -> (the client it needs, its module here, its class). Nothing is imported before it is asked
-# for: the clients take seconds.
+# Name -> (required client, module here, class). Each is imported only on request: the clients take
+# seconds.
 WATCHERS = {
     "tensorboard": ("tensorboardX", "tensorboard_files", "TensorBoardWatcher"),
     "wandb": ("wandb", "wandb_run", "WandbWatcher"),
@@ -18,10 +18,10 @@ WATCHERS = {
 
 
 def require_watchers(names: Sequence[str]) -> None:
-    """Refuse watchers that cannot be had, before anything is computed or written.
+    """Refuse watchers that are not available, before anything is computed or written.
 
     Raises:
-        InputError: a client is not installed, or cannot be used as it is set up.
+        InputError: a client is not installed, or its settings do not work.
     """
     for name in names:
         client, _, _ = WATCHERS[name]
@@ -37,10 +37,10 @@ def require_watchers(names: Sequence[str]) -> None:
 
 
 def open_watchers(names: Sequence[str], folder: str | Path) -> dict[str, Watcher]:
-    """Return watchers of a run folder, not told anything yet.
+    """Return watchers of a run folder, not begun yet.
 
     Raises:
-        InputError: a client is not installed, or cannot be used as it is set up.
+        InputError: a client is not installed, or its settings do not work.
     """
     require_watchers(names)
     return {name: getattr(_module(name), WATCHERS[name][2])(Path(folder)) for name in names}

@@ -1,4 +1,4 @@
-"""Under which name somebody else's service knows a run: kept in the run folder."""
+"""Identity of a run in an external service, kept in the run folder."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,14 +8,14 @@ from jaxleas.types.errors import InputError
 
 
 def lasting_identity(path: Path, make: Callable[[], str]) -> str:
-    """Return the identity in a file, made and written there the first time.
+    """Return the identity in a file; it is made and written there the first time.
 
     Args:
-        path: of the file.
-        make: returns a new one.
+        path: path of the file.
+        make: function that returns a new identity.
 
     Raises:
-        InputError: the file cannot be read or written, or holds none.
+        InputError: the file cannot be read or written, or holds no identity.
     """
     if not path.is_file():
         write_json(path, {"run": make()})

@@ -11,19 +11,19 @@ from jaxleas.runs.watching.identity import lasting_identity
 from jaxleas.runs.watching.watcher import Status
 
 EXPERIMENT = "jaxleas"
-"""Where MLFLOW_EXPERIMENT_NAME names none."""
+"""Name of the experiment if MLFLOW_EXPERIMENT_NAME is not set."""
 STATUS: dict[Status, str] = {"finished": "FINISHED", "interrupted": "KILLED", "failed": "FAILED"}
-STEP_TAG = "jaxleas.step"  # the last row that the run has
-PARAMETERS_A_CALL = 100  # MLflow takes no more
+STEP_TAG = "jaxleas.step"  # tag with the step of the run's last row
+PARAMETERS_A_CALL = 100  # MLflow's limit
 
 
 class MlflowWatcher:
-    """A run of MLflow; a resumed training goes on in it.
+    """A run of MLflow; a resumed training continues it.
 
-    Uses the client alone, not MLflow's "active run", which belongs to the user's own program.
+    It uses the client alone, not MLflow's "active run", which belongs to the user's own program.
 
     Args:
-        folder: of the run; holds `mlflow.json`, the identity.
+        folder: run folder, which holds the identity in `mlflow.json`.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -31,7 +31,7 @@ class MlflowWatcher:
         self._last = -1
 
     def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
-        """Open the run; rows that it has already are passed over."""
+        """Open the run; rows that it already has are skipped."""
         self._client: Any = import_module("mlflow").MlflowClient()
         self._entities: Any = import_module("mlflow.entities")
         self._run = lasting_identity(self._folder / "mlflow.json", lambda: self._make(name))
@@ -54,7 +54,7 @@ class MlflowWatcher:
         self._last = step
 
     def end(self, status: Status) -> None:
-        """Say how it ended."""
+        """Report how the run ended."""
         self._client.set_terminated(self._run, status=STATUS[status])
 
     def _make(self, name: str) -> str:

@@ -1,4 +1,4 @@
-"""TensorBoard: event files in the run folder, nothing over the network."""
+"""TensorBoard: event files in the run folder, without using the network."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,10 +8,10 @@ from jaxleas.runs.watching.watcher import Status
 
 
 class TensorBoardWatcher:
-    """Writes `tensorboard/` in the run folder.
+    """Watcher that writes `tensorboard/` in the run folder.
 
     Args:
-        folder: of the run.
+        folder: run folder.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -19,13 +19,13 @@ class TensorBoardWatcher:
 
     def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
         """Open an event file; rows after `resumed_after` of earlier files are hidden."""
-        from tensorboardX import SummaryWriter  # slow to import and wanted only in training
+        from tensorboardX import SummaryWriter  # slow to import and needed only in training
 
         purge = None if resumed_after is None else resumed_after + 1
         self._board = SummaryWriter(str(self._folder), purge_step=purge, flush_secs=10)
 
     def row(self, step: int, metrics: Mapping[str, float]) -> None:
-        """Write one point of every metric."""
+        """Write one point for every metric."""
         for name, value in metrics.items():
             self._board.add_scalar(name, value, step)
 

@@ -11,17 +11,17 @@ from jaxleas.runs.watching.watcher import Status
 from jaxleas.types.errors import InputError
 
 PROJECT = "jaxleas"
-"""Where WANDB_PROJECT names none."""
+"""Name of the project if WANDB_PROJECT is not set."""
 PATIENCE = 25.0
-"""For an answer of the server; less than the audience's farewell, so that no process hangs [s]."""
+"""Time for the server to answer [s]; less than the audience's farewell, so no process hangs."""
 EXIT_CODES: dict[Status, int] = {"finished": 0, "interrupted": 130, "failed": 1}
 
 
 def require_usable(wandb: Any) -> None:
-    """Refuse a client that would ask for a key in mid-run.
+    """Refuse a client that would ask for a key during the run.
 
     Raises:
-        InputError: it is on-line and knows no key.
+        InputError: the client is online and has no key.
     """
     settings = wandb.setup().settings
     if settings.mode != "online" or settings.api_key:
@@ -31,17 +31,18 @@ def require_usable(wandb: Any) -> None:
 
 
 class WandbWatcher:
-    """A run of Weights & Biases; a resumed training goes on in it.
+    """A run of Weights & Biases; a resumed training continues it.
 
     Args:
-        folder: of the run; holds `wandb.json`, the identity, and `wandb/`, the client's own files.
+        folder: run folder, which holds the identity in `wandb.json`, and the client's own files in
+            `wandb/`.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
     def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
-        """Open the run; rows that it has already are passed over by the client."""
+        """Open the run; the client skips rows that it already has."""
         wandb: Any = import_module("wandb")
         project = wandb.setup().settings.project
         self._run = wandb.init(
@@ -51,7 +52,7 @@ class WandbWatcher:
             name=name,
             dir=str(self._folder),
             config=dict(config),
-            reinit="create_new",  # several trainings may go on in one process
+            reinit="create_new",  # several trainings may run in one process
             settings=wandb.Settings(silent=True, console="off", init_timeout=PATIENCE),
         )
 
@@ -60,5 +61,5 @@ class WandbWatcher:
         self._run.log(dict(metrics), step=step)
 
     def end(self, status: Status) -> None:
-        """Wait for what is under way, and close."""
+        """Wait until everything is sent, and close the run."""
         self._run.finish(exit_code=EXIT_CODES[status])

@@ -1,4 +1,4 @@
-"""What a watcher of a run is."""
+"""The protocol of a watcher of a run."""
 
 from collections.abc import Mapping
 from typing import Any, Literal, Protocol
@@ -7,16 +7,16 @@ Status = Literal["finished", "interrupted", "failed"]
 
 
 class Watcher(Protocol):
-    """Is told what a run logs; may be slow and may fail: the training does not wait for it."""
+    """Receiver of what a run logs; it may be slow or fail: the training does not wait for it."""
 
     def begin(self, config: Mapping[str, Any], name: str, resumed_after: int | None) -> None:
-        """Open the run, or go on in it.
+        """Open the run, or continue it.
 
         Args:
-            config: the resolved configuration, as plain values.
-            name: of the run, for people.
-            resumed_after: step of the checkpoint gone on from; None for a new run. Rows after it
-                come again.
+            config: resolved configuration, as plain values.
+            name: name of the run, for display.
+            resumed_after: step of the checkpoint that was resumed; None for a new run. Rows after
+                it are sent again.
         """
         ...
 
@@ -24,11 +24,11 @@ class Watcher(Protocol):
         """Take one row of metrics.
 
         Args:
-            step: training steps done.
-            metrics: by name; a number may be NaN or infinite.
+            step: number of training steps done.
+            metrics: metrics by name; a number may be NaN or infinite.
         """
         ...
 
     def end(self, status: Status) -> None:
-        """Close the run; an interrupted one may be gone on with."""
+        """Close the run; an interrupted one may be continued later."""
         ...

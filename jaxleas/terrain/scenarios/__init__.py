@@ -1,4 +1,4 @@
-"""Named terrains to be judged on (T 3.4.2, 4.3, 5.2 and their figures; I sec. IV)."""
+"""Named terrains for evaluation (T 3.4.2, 4.3, 5.2 and their figures; I sec. IV)."""
 
 from jaxleas.terrain.scenarios.catalogue import SCENARIOS, make_scenario, scene_with_areas
 from jaxleas.terrain.scenarios.courses import circuit, long_course, rotation

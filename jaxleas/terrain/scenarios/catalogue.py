@@ -1,4 +1,4 @@
-"""Every named scenario by its name, and its scene with the task written into it."""
+"""All scenarios by name, and their scenes with the task as named areas."""
 
 import difflib
 from collections.abc import Callable, Mapping
@@ -43,14 +43,14 @@ SCENARIOS: Mapping[str, Callable[[int], Scenario]] = MappingProxyType(
 )
 """The sources draw most of these terrains without dimensions; each docstring says what is published
 and what is chosen here. All are walked in the direction of +x (the circuit begins so), and each is
-the same, always, for one name and seed."""
+always the same for the same name and seed."""
 
 
 def make_scenario(name: str, seed: int) -> Scenario:
     """Return a scenario by its name.
 
     Raises:
-        InputError: there is none of that name.
+        InputError: there is no scenario of that name.
     """
     if name not in SCENARIOS:
         close = difflib.get_close_matches(name, SCENARIOS, n=1, cutoff=0.5)

@@ -1,4 +1,4 @@
-"""Long ways: level ground to turn on, the long course, the circuit."""
+"""Long courses: level ground to turn on, the long course, the circuit."""
 
 import numpy as np
 
@@ -24,15 +24,15 @@ from jaxleas.terrain.tiles import (
 
 LONG_KINDS = ("rubble", "bridge", "stairs up", "stairs down", "stairs up")
 LONG_STAIRS = 8
-"""Steps of each of the long course's stairs: with 25 rectangles of rubble, 6 tiles and the bridge
-these are the published 56 surfaces."""
+"""Number of steps in each of the long course's stairs: with 25 rectangles of rubble, 6 tiles and
+the bridge these are the published 56 surfaces."""
 
 
 def rotation(seed: int) -> Scenario:
     """Return level ground to turn and walk on (T 4.3.1, table 4.1): the same for every seed.
 
     The ground is 8 m along x and 5 m across, one surface. Starts: the square of 1 m around the
-    origin; goal: 0.25 m around a point 3.5 m ahead: ways of 3 to 4 m, as published.
+    origin; goal: 0.25 m around a point 3.5 m ahead: distances of 3 to 4 m, as published.
     """
     del seed
     scene = compose([floor((-2.5, 5.5, -2.5, 2.5))])
@@ -43,9 +43,9 @@ def long_course(seed: int) -> Scenario:
     """Return rubble, a bridge and three stairs in a row (T figs. 5.4, 5.8, table 5.1).
 
     Six flat tiles of 2 m with five transitions between: 22 m, and the published 56 surfaces. The
-    stairs (up, down, up; the source shows both kinds and says neither order nor height) have 8
+    stairs (up, down, up; the source shows both kinds and gives neither order nor height) have 8
     steps each and climb 0.4 to 1 m; the bridge is a narrow one. Waypoints: the middles of the flat
-    tiles, which the baselines need (T 5.2.4) and every method is given. Start: the middle 0.8 m of
+    tiles, which the baselines need (T 5.2.4) and every method receives. Start: the middle 0.8 m of
     the first tile.
     """
     rng = random_stream("long_course", seed)
@@ -68,8 +68,8 @@ def circuit(seed: int) -> Scenario:
     """Return a round walk over stairs, bridges and rubble (T fig. 3.17, I fig. 8).
 
     Six flat tiles and six of the generator's transitions form a ring in a grid of 5 x 3 tiles;
-    stairs up come first and stairs down fourth, two bridges (one narrow for certain), rubble and
-    flat ground are shuffled between. Waypoints: the middles of the flat tiles, the first one
+    stairs up come first and stairs down fourth; two bridges (at least one narrow), rubble and
+    flat ground are shuffled in between. Waypoints: the middles of the flat tiles, the first one
     last; start: the middle metre of the first tile.
     """
     rng = random_stream("circuit", seed)

@@ -1,4 +1,4 @@
-"""What must be gone round, and what cannot be crossed at all."""
+"""Obstacles to walk around, and dead ends that cannot be crossed at all."""
 
 from dataclasses import replace
 from typing import Literal
@@ -20,19 +20,19 @@ from jaxleas.terrain.tiles import flat_tile
 
 DeadEndKind = Literal["void", "wall", "platform"]
 HOLE_HALF_WIDTH = 0.55
-"""Of the hole, across the way [m]."""
+"""Half the width of the hole across the course [m]."""
 MOST_SHIFT = 0.25
-"""By which the hole lies aside of the middle [m]."""
+"""Largest distance of the hole's centre from the middle, to either side [m]."""
 
 
 def hole(seed: int) -> Scenario:
     """Return a floor with a hole between starts and goal (T fig. 3.15, I sec. IV-B.2).
 
     The floor is 4 m along x and 4 m across, the hole in its middle 1 m along x and 1.1 m across,
-    shifted aside by up to 0.25 m: the rims are 1.2 to 1.7 m wide. (The sources give no size; from
-    the middle of a wider hole no rim lies within the 0.6 m that LEAS sees to a side, and a local
-    method has nothing to steer by.) Starts: 0.5 to 0.9 m before the hole, over 2.4 m of the width;
-    goal: 0.2 m around a point 1 m behind the hole.
+    shifted sideways by up to 0.25 m: the rims are 1.2 to 1.7 m wide. (The sources give no size;
+    from the middle of a wider hole no rim lies within the 0.6 m that LEAS sees to each side, and a
+    local method has nothing to steer by.) Starts: 0.5 to 0.9 m before the hole, over 2.4 m of the
+    width; goal: 0.2 m around a point 1 m behind the hole.
     """
     rim = _rim(seed)
     floors = [
@@ -50,7 +50,7 @@ def hole_rim(seed: int) -> Scenario:
 
     "A small area from where all our steering methods can generate valid guide paths": the straight
     lines run beside the hole, 0.03 to 0.5 m from its edge. Starts: 0.5 to 0.9 m before the hole and
-    up to 0.5 m aside of its edge; goal: 0.05 m around a point 1 m behind the hole, 0.1 m aside of
+    up to 0.5 m beside its edge; goal: 0.05 m around a point 1 m behind the hole, 0.1 m beside
     the edge. The seed chooses the rim.
     """
     low, high = _rim(seed)
@@ -65,8 +65,8 @@ def hole_rim(seed: int) -> Scenario:
 def wall(seed: int) -> Scenario:
     """Return level ground with a wall that leaves a passage at one side (T 4.3.2, scenario B2).
 
-    The ground is 5 m along x and 4 m across; the wall, 0.2 m thick and 1.5 m high, stands half
-    way, from one side of the ground to between 0.1 m short of the middle and 0.2 m beyond: the
+    The ground is 5 m along x and 4 m across; the wall, 0.2 m thick and 1.5 m high, stands
+    halfway, from one side of the ground to between 0.1 m short of the middle and 0.2 m beyond: the
     passage is 1.8 to 2.1 m wide. The seed chooses the side. Starts: 1 to 1.7 m before the wall,
     in the middle metre; goal: the middle metre 1 to 2 m behind it. Most straight lines hit the
     wall or come closer than half a trunk (0.3 m).

@@ -1,4 +1,4 @@
-"""A terrain with a task, and the parts that named terrains are built of."""
+"""A terrain with a task, and the parts of which named terrains are built."""
 
 import zlib
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from jaxleas.terrain.tiles import TileFrame, TilePolygons
 CONFIG = GeneratorConfig()
 SIZE, INSET = CONFIG.tile_size, CONFIG.inset
 NEAR, FAR, HALF_WIDTH = (0.25, 0.9), (0.9, 1.75), 0.7
-"""Starts before the first edge of what comes, and to either side of the middle [m]."""
+"""Distances of starts before the first edge ahead, and to either side of the middle [m]."""
 
 
 @dataclass(frozen=True)
@@ -23,11 +23,11 @@ class Scenario:
     """A terrain with a task.
 
     Attributes:
-        name: e.g. "bridge".
-        scene: its polygons.
-        start_areas: rectangles (x_min, x_max, y_min, y_max) [m]: near and far, or one alone.
-        goal_area: rectangle [m].
-        waypoints: to be reached in order (x, y) [m]; of courses and circuits only.
+        name: name of the scenario, such as "bridge".
+        scene: polygons of the terrain.
+        start_areas: rectangles (x_min, x_max, y_min, y_max) [m]: near and far, or only one.
+        goal_area: rectangle of the goal [m].
+        waypoints: points (x, y) to reach in order [m]; only for courses and circuits.
         crossing: whether the goal can be reached; if not, the robot must stop and stay valid.
     """
 
@@ -40,7 +40,7 @@ class Scenario:
 
 
 def random_stream(name: str, seed: int) -> np.random.Generator:
-    """Return the random numbers of a scenario: its own, whatever else is drawn."""
+    """Return the generator of a scenario's random numbers, independent of all others."""
     return np.random.default_rng([zlib.crc32(name.encode()), seed])
 
 
@@ -62,7 +62,7 @@ def box(area: Area, bottom: float, top: float) -> TilePolygons:
 
 
 def platform(area: Area, height: float) -> TilePolygons:
-    """Return a floor one could stand on, with the side faces that keep one from getting there."""
+    """Return a raised floor, with side faces that keep a robot from walking onto it."""
     sides = box_faces(_corners(area, INSET), 0.0, height)
     return TilePolygons([sides.pop("top")], [sides])
 

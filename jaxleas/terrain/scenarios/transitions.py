@@ -1,4 +1,4 @@
-"""Rubble, bridges and stairs to be crossed, one at a time or in one terrain."""
+"""Rubble, bridges and stairs to cross, one at a time or in one terrain."""
 
 from dataclasses import replace
 from typing import Literal
@@ -28,14 +28,14 @@ from jaxleas.terrain.tiles import (
 
 TransitionKind = Literal["rubble", "bridge", "stairs_up", "stairs_down"]
 EVALUATION_KINDS: tuple[TransitionKind, ...] = ("rubble", "bridge", "stairs_down", "stairs_up")
-"""In the order of T fig. 3.16."""
+"""Kinds of transitions, in the order of T fig. 3.16."""
 
 
 def transition(kind: TransitionKind, seed: int) -> Scenario:
     """Return a flat tile, one random transition, a flat tile (T fig. 3.16).
 
-    Tiles are 2 m and in a row along x, transitions those of the generator; bridges are its narrow
-    ones. Around it is void. Starts: near and far; goal: the middle metre of the last tile.
+    Tiles of 2 m lie in a row along x; transitions are those of the generator, and bridges are its
+    narrow ones. Around them is void. Starts: near and far; goal: the middle metre of the last tile.
     """
     middle, rise = _middle(kind, tile_frame(1), 0.0, random_stream(kind, seed))
     parts = [flat_tile(tile_frame(0), 0.0), middle, flat_tile(tile_frame(2), rise)]
@@ -81,7 +81,7 @@ def evaluation_terrain(seed: int) -> tuple[Scenario, ...]:
 def _middle(
     kind: TransitionKind, frame: TileFrame, height: float, rng: np.random.Generator
 ) -> tuple[TilePolygons, float]:
-    """Return the tile of a transition that begins at `height`, and how far it rises [m]."""
+    """Return the tile of a transition that begins at `height`, and its rise [m]."""
     climb = rng.uniform(*CONFIG.stairs.climb)
     if kind == "rubble":
         return rubble_tile(frame, (height, height), CONFIG, rng), 0.0

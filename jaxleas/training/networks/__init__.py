@@ -1,4 +1,4 @@
-"""Networks behind one interface: what a policy computes, in training, judged and exported."""
+"""Networks behind one interface, for policies in training, judged and exported."""
 
 from jaxleas.training.networks.actor_critic import ActorCritic, make_networks
 from jaxleas.training.networks.making import make_network, network_described

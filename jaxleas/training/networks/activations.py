@@ -14,7 +14,7 @@ def onnx_activation(nodes: OnnxNodes, name: str, value: str) -> str:
     """Add the nodes of an activation; return the name of its result.
 
     Raises:
-        InputError: ONNX has no counterpart of it.
+        InputError: ONNX has no counterpart of the activation.
     """
     match name:
         case "relu":

@@ -18,10 +18,10 @@ class ActorCritic:
     """The networks of a policy and of its value.
 
     Attributes:
-        signature: what they see, and what the actor's answer means.
-        actor: sees what a policy is shown.
-        critic: sees every part of the observation, those of its own included.
-        numbers: type in which training takes products.
+        signature: observation that they see, and meaning of the actor's answer.
+        actor: network that sees what a policy is shown.
+        critic: network that sees every part of the observation, also those for the critic alone.
+        numbers: number type in which training computes products.
     """
 
     signature: Signature
@@ -46,7 +46,7 @@ class ActorCritic:
         Args:
             policy: parameters of the actor.
             seen: normalised observations.
-            always: true, and not known to the compiler (`xla.dense`).
+            always: value that is true, which the compiler does not know (`xla.dense`).
         """
         return self.actor.answer(policy, self.signature.for_actor(seen), self.numbers, always)
 
@@ -56,7 +56,7 @@ class ActorCritic:
         seen: Float[Array, "*batch size"],
         always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch"]:
-        """Return the critic's answer, likewise."""
+        """Return the critic's answer; the arguments are those of `answer`."""
         return self.critic.answer(value, seen, self.numbers, always)[..., 0]
 
     def judged(self, policy: Any, seen: Float[Array, "*batch size"]) -> Array:

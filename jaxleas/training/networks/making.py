@@ -17,9 +17,9 @@ def make_network(config: NetworkConfig, parts: tuple[Part, ...], outputs: int) -
     """Return the network over some parts of an observation.
 
     Args:
-        config: kind and sizes; one with maps is a perceptron where no part is a map.
+        config: kind and sizes; the kind `maps` gives a perceptron where no part is a map.
         parts: parts of the observation, in the order in which they come.
-        outputs: length of its answer.
+        outputs: length of the network's answer.
     """
     if config.kind == "maps" and any(part.is_map for part in parts):
         maps = config.maps
@@ -46,15 +46,15 @@ def network_described(
     """Return the network that a policy's file describes.
 
     Args:
-        described: what `Network.describe` returned; None in files of policies that were written
-            before there was more than one kind.
+        described: value that `Network.describe` returned; None in files of policies that were
+            written before there was more than one kind.
         activation: name of the activation.
-        arrays: its parameters, which tell the sizes of the layers.
-        parts: parts of the observation that it sees.
-        outputs: length of its answer.
+        arrays: parameters of the network, which give the sizes of the layers.
+        parts: parts of the observation that the network sees.
+        outputs: length of the network's answer.
 
     Raises:
-        ValueError: there is no such kind or activation, or a size is no number.
+        ValueError: there is no such kind or activation, or a size is not a number.
     """
     if activation not in ACTIVATIONS:
         raise ValueError(f"activation {activation!r}")

@@ -1,6 +1,6 @@
 """A network with an encoder for each map: convolutions and a dense layer, joined with the vectors.
 
-D sec. III-A: three convolutions and a dense layer per map; what they say is joined with the other
+D sec. III-A: three convolutions and a dense layer per map; their output is joined with the other
 parts of the observation and goes through a perceptron.
 """
 
@@ -28,12 +28,12 @@ class MapEncoder:
     """Convolutions of stride 2 over each map, a dense layer, and a perceptron over everything.
 
     Attributes:
-        shapes: shape of each part of what it is given; those with two axes are maps.
+        shapes: shape of each part of the input; parts with two axes are maps.
         channels: channels of each convolution.
         kernels: side of each convolution's kernel.
-        latent: numbers that each map becomes.
+        latent: length of the vector into which each map is encoded.
         hidden: sizes of the perceptron's layers.
-        outputs: length of its answer.
+        outputs: length of the answer.
         activation: name of the activation.
     """
 
@@ -52,12 +52,12 @@ class MapEncoder:
 
     @property
     def inputs(self) -> int:
-        """Length of what it is given."""
+        """Length of the input."""
         return sum(_size(shape) for shape in self.shapes)
 
     @property
     def _maps(self) -> list[tuple[int, tuple[int, int]]]:
-        """Where each map begins among what it is given, and its shape."""
+        """Position in the input at which each map begins, and its shape."""
         begin, found = 0, []
         for shape in self.shapes:
             if len(shape) == 2:
@@ -117,18 +117,18 @@ class MapEncoder:
         numbers: str = "float32",
         always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer as training computes it (`Network.answer`)."""
+        """Return the answer as training computes it (`Network.answer`)."""
         joined = self._encode(params, rows.astype(numbers))
         return self._joined.answer(params, joined, numbers, always)
 
     def plain(
         self, params: Any, rows: Float[Array, "*batch inputs"]
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer as it is judged."""
+        """Return the answer as it is judged."""
         return self._joined.plain(params, self._encode(params, rows))
 
     def _encode(self, params: Any, rows: Array) -> Array:
-        """Return the vectors, then what each map becomes."""
+        """Return the vectors, then the encoding of each map."""
         batch = rows.shape[:-1]
         activate = ACTIVATION[self.activation]
         latents = []
@@ -164,7 +164,7 @@ class MapEncoder:
         return found | self._joined.arrays(params)
 
     def parameters(self, arrays: Mapping[str, np.ndarray]) -> Any:
-        """Return the parameters that `arrays` took apart."""
+        """Return the parameters that `arrays` turned into named arrays."""
         encoders = [
             {
                 name: array_of_shape(arrays, f"map_{number}_{name}", size)
@@ -208,7 +208,7 @@ class MapEncoder:
         return onnx_activation(nodes, self.activation, latent)
 
     def describe(self) -> dict[str, Any]:
-        """Return its kind and sizes."""
+        """Return the kind and sizes of the network."""
         return {
             "kind": "maps",
             "hidden": list(self.hidden),

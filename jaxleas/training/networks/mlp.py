@@ -1,4 +1,4 @@
-"""A perceptron of several layers, with the parameters of Brax's."""
+"""A perceptron of several layers, with parameters laid out as Brax does."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ class Mlp:
     """Dense layers with an activation between them.
 
     Attributes:
-        inputs: length of what it is given.
-        hidden: sizes of the layers between.
-        outputs: length of its answer.
+        inputs: length of the input.
+        hidden: sizes of the hidden layers.
+        outputs: length of the answer.
         activation: name of the activation.
     """
 
@@ -43,13 +43,13 @@ class Mlp:
         numbers: str = "float32",
         always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer as training computes it (`Network.answer`)."""
+        """Return the answer as training computes it (`Network.answer`)."""
         return dense(layers_of(params), rows, ACTIVATION[self.activation], numbers, always)
 
     def plain(
         self, params: Any, rows: Float[Array, "*batch inputs"]
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer as it is judged."""
+        """Return the answer as it is judged."""
         return plain_dense(layers_of(params), rows, ACTIVATION[self.activation])
 
     def arrays(self, params: Any) -> dict[str, Array]:
@@ -61,7 +61,7 @@ class Mlp:
         }
 
     def parameters(self, arrays: Mapping[str, np.ndarray]) -> Any:
-        """Return the parameters that `arrays` took apart."""
+        """Return the parameters that `arrays` turned into named arrays."""
         sizes = [self.inputs, *self.hidden, self.outputs]
         layers = []
         for index in range(len(sizes) - 1):
@@ -80,7 +80,7 @@ class Mlp:
         return rows
 
     def describe(self) -> dict[str, Any]:
-        """Return its kind and sizes."""
+        """Return the kind and sizes of the network."""
         return {"kind": "mlp", "hidden": list(self.hidden)}
 
 
@@ -92,7 +92,7 @@ def layers_of(params: Any) -> list[tuple[Array, Array]]:
 
 
 def params_of(layers: Sequence[Sequence[Any]]) -> Any:
-    """Return the parameters of layers, each kernel and bias."""
+    """Return parameters made of the kernel and bias of each layer."""
     return {
         "params": {
             f"hidden_{index}": {"kernel": kernel, "bias": bias}
@@ -104,10 +104,10 @@ def params_of(layers: Sequence[Sequence[Any]]) -> Any:
 def array_of_shape(
     arrays: Mapping[str, np.ndarray], name: str, shape: tuple[int, ...]
 ) -> Float[Array, "..."]:
-    """Return a named array as JAX's.
+    """Return a named array as a JAX array.
 
     Raises:
-        ValueError: it is missing or of another shape.
+        ValueError: the array is missing or of another shape.
     """
     if name not in arrays:
         raise ValueError(f"{name} is missing")

@@ -1,4 +1,4 @@
-"""What a network is: one vector in, one out, in training, judged, as arrays and as ONNX nodes."""
+"""The protocol of a network from vector to vector: in training, judged, as arrays, as ONNX."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -11,11 +11,11 @@ from jaxleas.types.onnx_nodes import OnnxNodes
 
 
 class Network(Protocol):
-    """A kind of network of some sizes; frozen and hashable, its parameters are apart.
+    """A kind of network with its sizes; frozen and hashable, without its parameters.
 
     Attributes:
-        inputs: length of what it is given: an observation's normalised values.
-        outputs: length of its answer.
+        inputs: length of the input: an observation's normalised values.
+        outputs: length of the answer.
         activation: name of the activation between layers.
     """
 
@@ -26,12 +26,12 @@ class Network(Protocol):
 
     @property
     def inputs(self) -> int:
-        """Length of what it is given."""
+        """Length of the input."""
         ...
 
     @property
     def outputs(self) -> int:
-        """Length of its answer."""
+        """Length of the answer."""
         ...
 
     def init(self, key: Key[Array, ""]) -> Any:
@@ -45,28 +45,28 @@ class Network(Protocol):
         numbers: str = "float32",
         always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer, float32, as training computes it.
+        """Return the answer, float32, as training computes it.
 
         Args:
-            params: its parameters.
+            params: parameters of the network.
             rows: normalised observations.
-            numbers: type in which products are taken.
-            always: true, and not known to the compiler (`xla.dense`).
+            numbers: number type in which products are computed.
+            always: value that is true, which the compiler does not know (`xla.dense`).
         """
         ...
 
     def plain(
         self, params: Any, rows: Float[Array, "*batch inputs"]
     ) -> Float[Array, "*batch outputs"]:
-        """Return its answer as it is judged and exported: float32, arranged for no device."""
+        """Return the answer as it is judged and exported: float32, arranged for no device."""
         ...
 
     def arrays(self, params: Any) -> dict[str, Array]:
-        """Return its parameters as named plain arrays."""
+        """Return the parameters as plain arrays by name."""
         ...
 
     def parameters(self, arrays: Mapping[str, np.ndarray]) -> Any:
-        """Return the parameters that `arrays` took apart.
+        """Return the parameters that `arrays` turned into named arrays.
 
         Raises:
             ValueError: an array is missing or of another shape.
@@ -78,5 +78,5 @@ class Network(Protocol):
         ...
 
     def describe(self) -> dict[str, Any]:
-        """Return its kind and sizes as plain JSON values: `network_described` reads them."""
+        """Return kind and sizes as plain JSON values: `network_described` reads them."""
         ...

@@ -32,7 +32,7 @@ def make_walk(config: RunConfig, task: Task, networks: ActorCritic) -> Callable:
         progress = state.update.astype(jnp.float32) / ppo.updates
         weights = task.weights(numbers.task, progress)
         pool = pool_of(task.draw_starts(world, pool_key, ppo.candidates))
-        # All that is random in one draw each: one key a batch, not one a step or a robot.
+        # All random numbers are drawn in bulk: one key per batch, not one per step or robot.
         picks = draw_picks(pool, restart_key, shape)
         noise = signature.draw_noise(noise_key, shape)
 

@@ -1,6 +1,6 @@
 """The roll-out of a task that steps on the host: the network is jitted, the steps are NumPy's.
 
-No callback inside a program: on CPUs they can hang. Network and task take turns instead.
+There is no callback inside a program: on CPUs callbacks can hang. Network and task alternate.
 """
 
 from typing import Any
@@ -21,7 +21,7 @@ from jaxleas.training.walkers.metrics import Metrics, walk_metrics
 
 
 def generator_of(key: Array) -> np.random.Generator:
-    """Return NumPy's stream of random numbers that a key of JAX's stands for."""
+    """Return the NumPy generator of random numbers that a JAX key seeds."""
     return np.random.default_rng(np.asarray(jax.random.key_data(key)).ravel().tolist())
 
 
@@ -53,11 +53,11 @@ class HostWalker:
     def __call__(
         self, world: Any, state: TrainState, numbers: PpoParams, key: Array
     ) -> tuple[TrainState, Experience, Metrics]:
-        """Return the state after `ppo.unroll` steps of every robot, what was walked, and metrics.
+        """Return the state after `ppo.unroll` steps of every robot, the experience, and metrics.
 
         Args:
-            world: what the robots stand in.
-            state: before the walk.
+            world: world that the robots walk in.
+            state: state before the roll-out.
             numbers: hyperparameters.
             key: randomness, consumed here.
         """
@@ -97,7 +97,7 @@ class HostWalker:
 
 
 def look(task: Task, world: Any, episode: Any) -> np.ndarray:
-    """Return what is seen on the host, as the one vector that networks take, float32."""
+    """Return the observation on the host, as the one float32 vector that networks take."""
     return np.asarray(task.signature.pack(task.look(world, episode)), np.float32)
 
 

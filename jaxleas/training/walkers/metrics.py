@@ -1,4 +1,4 @@
-"""What is logged of a roll-out."""
+"""The metrics that are logged for a roll-out."""
 
 from typing import Any
 
@@ -11,13 +11,13 @@ Metrics = dict[str, Any]
 def walk_metrics(
     ppo: PpoConfig, batch: Experience, reached: Any, measures: dict[str, Any], valid_starts: Any
 ) -> Metrics:
-    """Return the metrics of a roll-out, of JAX's arrays or NumPy's.
+    """Return the metrics of a roll-out, from arrays of JAX or NumPy.
 
     Args:
-        ppo: number of steps and robots.
-        batch: what was walked.
-        reached: where goals were reached [time, robots].
-        measures: further numbers of each step, by name.
+        ppo: configuration of PPO: numbers of steps and robots.
+        batch: experience of the roll-out.
+        reached: whether a goal was reached [time, robots].
+        measures: further measures of each step, by name.
         valid_starts: share of the drawn starts that are valid.
     """
     failed, cut = batch.terminated.sum(), batch.truncated.sum()
