@@ -143,4 +143,6 @@ def _check(path: str | Path, arrays: dict[str, np.ndarray], identity: Identity) 
                 f" {identity.observation}"
             )
         if not np.issubdtype(array.dtype, np.floating) or not np.isfinite(array).all():
-            raise InputError(f"{path}: {name} holds values that are not finite floating-point numbers")
+            raise InputError(
+                f"{path}: {name} holds values that are not finite floating-point numbers"
+            )
