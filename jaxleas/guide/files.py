@@ -17,7 +17,7 @@ Reason = Literal["reached", "invalid", "stopped"]
 VERSION = 1  # version of guide path files
 MAX_QUERIES = 100_000
 MAX_ABOVE_GROUND = 2.0  # a root higher than this [m] is given in other units or in another frame
-MAX_COORDINATE = 1e4  # likewise [m]; float32 still tells millimetres apart there
+MAX_COORDINATE = 1e4  # likewise [m]; float32 still distinguishes millimetres there
 MAX_SPEED = 10.0  # likewise [m/s]
 
 _LENGTHS = {"position": 3, "yaw": 0, "velocity": 3, "goal": 2}  # 0: a plain number

@@ -154,7 +154,7 @@ def _require_moving(
 
 def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list[Clip]":
     if guide is None and plan is None:
-        return []  # without a second of imports for their readers
+        return []  # do not spend a second on importing their readers
     from jaxleas.viewer.clips import read_guide_clips, read_plan_clip
 
     clips = read_guide_clips(guide) if guide is not None else []

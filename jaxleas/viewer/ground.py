@@ -35,7 +35,7 @@ def draw_terrain(server: "ViserServer", terrain: HeightMap, scene: Scene | None)
     """Draw a terrain, as a scene's polygons or as a height map, and look at it from the south.
 
     Args:
-        server: of the page.
+        server: server of the page.
         terrain: height map of the terrain.
         scene: scene whose surfaces and obstacles are drawn, if the terrain was a scene.
     """

@@ -1,4 +1,4 @@
-"""Connections with their answers: a search asks for one at a time, many are tried at a time."""
+"""Connections with their answers: a search asks for one at a time, and batches are tried."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
