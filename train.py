@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Literal
 
 from jaxleas.cli_guard import UsageError, run_guarded
 
-# JAX takes a second to import: not before the command line has been understood.
+# JAX takes a second to import: not before the command line is parsed.
 if TYPE_CHECKING:
     from jaxleas.runs.folder import RunFolder
     from jaxleas.training.config import RunConfig
@@ -48,7 +48,7 @@ def main(arguments: Sequence[str]) -> None:
 def _train_together(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
 ) -> None:
-    """Train with other processes: process 0 opens the run, the others are told what it is."""
+    """Train with other processes: process 0 opens the run and sends its configuration."""
     from jaxleas.files import parse_json
     from jaxleas.training.devices import choose_devices
     from jaxleas.training.processes import connect, disconnect, from_first
@@ -61,8 +61,8 @@ def _train_together(
         return opened[0][0].model_dump_json()
 
     connect(given.coordinator, given.process)
-    told = "process 0's configuration"
-    config = parse_run_config(parse_json(from_first(open_run), told), told, given.allow)
+    source = "process 0's configuration"
+    config = parse_run_config(parse_json(from_first(open_run), source), source, given.allow)
     run = opened[0][2] if opened else None
     with run or nullcontext():
         _train(config, choose_devices(given.devices, config.ppo), run, given.allow)

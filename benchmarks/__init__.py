@@ -1,1 +1,1 @@
-"""Benchmarks: how fast it is here, against what others use and against the machine's limit."""
+"""Benchmarks: the speed here, compared with other software and with the machine's limit."""

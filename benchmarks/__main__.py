@@ -25,7 +25,7 @@ def main(arguments: Sequence[str]) -> None:
     """Parse the command line, measure, show, write, compare."""
     given = _parser().parse_args(arguments)
     if given.device:
-        # For this process and those that it starts; the host's processor stays within reach.
+        # For this process and those that it starts; the host's processor stays available.
         name = {"gpu": "cuda"}.get(given.device, str(given.device))
         os.environ["JAX_PLATFORMS"] = name if name == "cpu" else f"{name},cpu"
 
@@ -55,7 +55,7 @@ def main(arguments: Sequence[str]) -> None:
             print(f"{metric.name}  [{metric.unit}], {metric.better} is better")
         return
     config = given.config.resolve() if given.config else CONFIG
-    # A mistake in it is found before anything is measured.
+    # Mistakes in it are found before anything is measured.
     share_cores(load_run_config(config).ppo)
     _require_device(given.device)
     if given.rivals:
@@ -64,7 +64,7 @@ def main(arguments: Sequence[str]) -> None:
     if target:
         _require_writable(target)
     before = read_measurements(given.into) if given.into and given.into.exists() else []
-    # What is trained with another configuration has nothing to be compared with but its own.
+    # Measurements with another configuration can only be compared with a baseline of their own.
     ours = given.config is None and BASELINE.is_file()
     if given.check or given.baseline != BASELINE or ours:
         baseline = by_name(read_measurements(given.baseline))
@@ -103,7 +103,7 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def _require_writable(path: Path) -> None:
-    """Find out now, rather than after an hour, that a file cannot be written."""
+    """Refuse a file that cannot be written before an hour of measuring."""
     from jaxleas.files import write_text
 
     trial = path.with_name(f"{path.name}.trial")
@@ -117,7 +117,7 @@ def _require_device(device: str | None) -> None:
     from jaxleas.types.errors import InputError
 
     try:
-        # By name: asked for its devices alone, JAX falls back to the processor without a word.
+        # By name: if it is only asked for its devices, JAX silently falls back to the processor.
         jax.devices(device)
     except (AssertionError, RuntimeError) as error:  # jax asserts where a plugin is missing
         raise InputError(
@@ -131,19 +131,30 @@ def _parser() -> argparse.ArgumentParser:
     add("--only", nargs="+", default=[], metavar="NAME", help="names or parts of names, as env_")
     add("--list", action="store_true", help="list the metrics instead of measuring")
     add("--quick", action="store_true", help="fewer metrics, two runs")
-    add("--runs", type=_positive, metavar="N", help="of each metric; the median counts (5)")
+    add("--runs", type=_positive, metavar="N", help="runs per metric; the median counts (5)")
     files = parser.add_mutually_exclusive_group()
     files.add_argument("--json", type=Path, metavar="OUT.json", help="write the measurements")
     text = "put them into a file, in place of those of the same names: measure piece by piece"
     files.add_argument("--into", type=Path, metavar="FILE.json", help=text)
-    add("--baseline", type=Path, default=BASELINE, metavar="FILE", help="to compare with")
+    add("--baseline", type=Path, default=BASELINE, metavar="FILE", help="baseline to compare with")
     add("--check", action="store_true", help="exit code 1 where worse than the baseline")
-    add("--config", type=Path, metavar="FILE", help="to train with, in place of the shipped one")
+    add(
+        "--config",
+        type=Path,
+        metavar="FILE",
+        help="configuration instead of the shipped one",
+    )
     rivals = parser.add_mutually_exclusive_group()
     add = rivals.add_argument
-    add("--rivals", nargs="?", const=sys.executable, metavar="PYTHON", help="that has the rival")
+    add(
+        "--rivals",
+        nargs="?",
+        const=sys.executable,
+        metavar="PYTHON",
+        help="Python with the rival",
+    )
     add("--no-rivals", action="store_true", help="even where this Python has the rival")
-    parser.add_argument("--device", choices=PLATFORMS, help="to measure on; by default JAX's own")
+    parser.add_argument("--device", choices=PLATFORMS, help="device to measure on (JAX's own)")
     return parser
 
 

@@ -1,4 +1,4 @@
-"""How much work a step is at the least: floating-point operations and bytes, from sizes alone."""
+"""The least work of a step: floating-point operations and bytes, computed from sizes."""
 
 import itertools
 from collections.abc import Sequence
@@ -21,19 +21,19 @@ def layers(inputs: int, hidden: Sequence[int], outputs: int) -> list[tuple[int, 
 
 
 def weights(network: Sequence[tuple[int, int]]) -> int:
-    """Return the number of weights, biases apart."""
+    """Return the number of weights, without biases."""
     return sum(rows * columns for rows, columns in network)
 
 
 def forward_flops(network: Sequence[tuple[int, int]]) -> int:
-    """Return the operations of applying a network to one sample: a product and a sum a weight."""
+    """Return the operations of a network on one sample: a product and a sum per weight."""
     return 2 * weights(network)
 
 
 def gradient_flops(network: Sequence[tuple[int, int]]) -> int:
     """Return the operations of one sample's part in a gradient, the forward pass included.
 
-    Three products a layer: forward, gradient of the weights, gradient of the inputs; the first
+    Three products per layer: forward, gradient of the weights, gradient of the inputs; the first
     layer's inputs are data and need no gradient.
     """
     return 3 * forward_flops(network) - forward_flops(network[:1])
@@ -43,15 +43,15 @@ def gradient_flops(network: Sequence[tuple[int, int]]) -> int:
 class StepWork:
     """The least work of one environment step in training.
 
-    Only what no implementation can do without is counted: activations, Adam, advantages, resets,
+    Only what every implementation needs is counted: activations, Adam, advantages, resets,
     random numbers and the bootstrap value are left out, so the bound is never too low.
 
     Attributes:
-        walk_flops: of matrix products while walking: the actor, once.
-        learn_flops: of matrix products while learning: both gradients, once an epoch.
-        learn_bytes: the observation, written once and read once an epoch.
-        env_bytes: of the environment alone: heights, observation, state and action.
-        env_heights: heights gathered from the atlas.
+        walk_flops: operations of matrix products while walking: the actor, once.
+        learn_flops: operations of matrix products while learning: both gradients, once per epoch.
+        learn_bytes: bytes of the observation, written once and read once per epoch.
+        env_bytes: bytes of the environment alone: heights, observation, state and action.
+        env_heights: number of heights gathered from the atlas.
     """
 
     walk_flops: int
@@ -62,7 +62,7 @@ class StepWork:
 
     @property
     def flops(self) -> int:
-        """Of all matrix products."""
+        """Operations of all matrix products."""
         return self.walk_flops + self.learn_flops
 
 
@@ -81,7 +81,7 @@ def step_work(config: AnyRun, env: SteeringEnv) -> StepWork:
 
 
 def env_words(env: SteeringEnv) -> int:
-    """Return the four-byte words that one step of one robot reads or writes at the least."""
+    """Return the least number of four-byte words that one step of one robot reads or writes."""
     motion, counters = 7, 3  # position, velocity, yaw; goal, its age, steps of the episode
     plan = 1 + GOALS * 3  # map; goals and their durations: read, seldom written
     heights = len(env.points_in_root)
@@ -91,7 +91,7 @@ def env_words(env: SteeringEnv) -> int:
 
 @dataclass(frozen=True)
 class Rates:
-    """What the machine was measured to do, all its cores together.
+    """The measured rates of the machine, all its cores together.
 
     Attributes:
         matrix: floating-point operations in matrix products [1/s].
@@ -105,12 +105,12 @@ class Rates:
 
 
 def env_limit(work: StepWork, rates: Rates) -> float:
-    """Return the environment steps a second that the machine allows at the most."""
+    """Return the largest number of environment steps per second that the machine allows."""
     return 1.0 / _env_seconds(work, rates)
 
 
 def ppo_limit(work: StepWork, rates: Rates) -> float:
-    """Return the steps of training a second that the machine allows at the most.
+    """Return the largest number of training steps per second that the machine allows.
 
     Walking and learning follow each other, so their times add up; within each, arithmetic and
     memory traffic may overlap, so the longer counts.

@@ -14,8 +14,8 @@ class Comparison:
     """How a measurement relates to the baseline's.
 
     Attributes:
-        verdict: in the metric's own direction.
-        change: how much better, relative; negative is worse; None where it has no number.
+        verdict: result of the comparison in the metric's own direction.
+        change: relative improvement; negative is worse; None where there is no number.
     """
 
     verdict: Verdict

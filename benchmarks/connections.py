@@ -1,9 +1,9 @@
-"""RB-Kino's connections: how many a second, and how near the least time.
+"""RB-Kino's connections: their number per second, and their distance from the least time.
 
     python -m benchmarks.connections --json benchmarks/results/rb_kino.json
 
-A connection alone is the closed form; a connection tried is walked over the terrain as a roadmap
-does it, every configuration judged.
+A connection alone is the closed form; a tried connection is walked over the terrain as in a
+roadmap, with every configuration judged.
 """
 
 import argparse
@@ -36,7 +36,7 @@ EDGE = 1.5
 
 
 def alone(runs: int) -> list[float]:
-    """Return connections a second of the closed form, `TOGETHER` in a call."""
+    """Return the connections per second of the closed form, `TOGETHER` per call."""
     limits = SteeringConfig().limits
     method, random = rb_kino(limits, 0.1), np.random.default_rng(0)
     motion = RootMotion(
@@ -50,7 +50,7 @@ def alone(runs: int) -> list[float]:
 
 
 def tried(runs: int) -> list[float]:
-    """Return connections a second that are walked and judged on rubble, `BATCH` in a call."""
+    """Return the connections per second walked and judged on rubble, `BATCH` per call."""
     env = SteeringEnv(SteeringConfig())
     places = Places(env, rasterise(transition("rubble", 0).scene))
     method = rb_kino(env.config.limits, env.config.desired_speed)
@@ -66,10 +66,10 @@ def tried(runs: int) -> list[float]:
 
 
 def errors() -> tuple[float, int]:
-    """Return how far times of axes are from the twin's [s], and how many joint times fail.
+    """Return the error of the axes' times against the twin's [s], and how many joint times fail.
 
-    A joint time fails where the twin cannot arrive at it on every axis, or can a microsecond
-    earlier at one of the times at which an axis becomes possible.
+    A joint time fails if the twin cannot arrive at it on every axis, or if it can arrive a
+    microsecond earlier, at one of the times at which an axis becomes possible.
     """
     pairs = random_connections(PAIRS)
     with jax.enable_x64(True):

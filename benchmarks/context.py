@@ -1,4 +1,4 @@
-"""What all workloads of one run share: the configuration, the terrain, the roofs, the rival."""
+"""The context of all workloads of a run: configuration, terrain, roofs and rival."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,10 +23,10 @@ class Context:
     """One run of the benchmarks.
 
     Attributes:
-        runs: of each metric.
-        rivals: a Python that has the rival, or None.
-        config: the shipped one, unless a test gives a smaller.
-        config_path: its file, for measurements in processes of their own.
+        runs: number of runs of each metric.
+        rivals: Python interpreter with the rival, or None.
+        config: configuration, by default the shipped one; tests give smaller ones.
+        config_path: file of the configuration, for measurements in separate processes.
     """
 
     runs: int

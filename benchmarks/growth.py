@@ -1,4 +1,4 @@
-"""Draw what growth costs: speed and memory against robots, observation, arenas and networks.
+"""Draw the cost of growth: speed and memory against robots, observation, arenas and networks.
 
 python -m benchmarks.growth BENCHMARKS.json --out PICTURE.png
 """
@@ -27,12 +27,12 @@ ENVIRONMENT_COLOUR, TRAINING_COLOUR = "#1f5fd0", "#e07020"
 
 @dataclass(frozen=True)
 class Axis:
-    """One thing that grows.
+    """One quantity that grows.
 
     Attributes:
-        label: what it is.
-        training: metric of each value.
-        environment: likewise, of the environment alone; none where it plays no part.
+        label: name of the quantity.
+        training: metric of training for each value.
+        environment: metric of the environment alone for each value; empty if it has no effect.
     """
 
     label: str
@@ -65,14 +65,14 @@ AXES = (
 
 
 def draw_growth(measurements: Sequence[Measurement], out: str | Path) -> None:
-    """Draw one column for each thing that grows: speed above, memory below.
+    """Draw one column for each quantity that grows: speed above, memory below.
 
     Args:
-        measurements: all that `AXES` names.
-        out: the picture.
+        measurements: measurements, with all that `AXES` names.
+        out: file of the picture.
 
     Raises:
-        InputError: one of them is not there.
+        InputError: a measurement is missing.
     """
     from matplotlib.figure import Figure
 

@@ -1,4 +1,4 @@
-"""What is measured, what came out, and the JSON file that holds it."""
+"""Metrics, measured figures, and the JSON file that holds them."""
 
 import math
 import platform
@@ -24,11 +24,11 @@ class Metric:
     """One line of the table.
 
     Attributes:
-        name: begins with env_, ppo_, learn_ or export_.
-        unit: of its value.
-        better: the direction that is good.
-        tolerance: relative difference to the baseline that says nothing.
-        quick: measured by `--quick`, too.
+        name: name, which begins with env_, ppo_, learn_ or export_.
+        unit: unit of the value.
+        better: direction of better values.
+        tolerance: relative difference from the baseline that is not significant.
+        quick: whether `--quick` measures it, too.
     """
 
     name: str
@@ -40,12 +40,12 @@ class Metric:
 
 @dataclass(frozen=True)
 class Figure:
-    """What measuring a metric gave.
+    """The measured values of a metric.
 
     Attributes:
-        runs: one value a run; None where a run never got there.
-        limit: what the hardware allows, in the metric's unit; None if unknown.
-        rival: what the rival reaches, in the metric's unit; None if not measured.
+        runs: one value per run; None for a run that never got there.
+        limit: limit of the hardware, in the metric's unit; None if unknown.
+        rival: value of the rival, in the metric's unit; None if not measured.
     """
 
     runs: Sequence[float | None]
@@ -64,13 +64,13 @@ class Measurement(Strict):
     runs: tuple[float | None, ...]
     machine: str
     rival: float | None
-    """The rival's figure for the same."""
+    """The rival's figure for the same metric."""
     ratio: float | None
-    """How many times better than the rival: above 1 we win, whatever the direction."""
+    """Number of times better than the rival: above 1 is better, whatever the direction."""
     limit: float | None
-    """What the hardware allows."""
+    """Limit of the hardware."""
     of_limit: float | None
-    """Fraction of the limit that is reached, at most 1 if the limit is one."""
+    """Fraction of the limit that is reached, at most 1 if the limit is a bound."""
 
     @classmethod
     def of(cls, metric: Metric, figure: Figure, machine: str) -> Self:
@@ -91,7 +91,7 @@ class Measurement(Strict):
 
 
 def median(runs: Sequence[float | None], better: Better) -> float | None:
-    """Return the median, with a run that never got there as the worst of all."""
+    """Return the median; a run that never got there counts as the worst."""
     worst = -math.inf if better == "higher" else math.inf
     value = statistics.median([worst if run is None else run for run in runs])
     return value if math.isfinite(value) else None
@@ -106,7 +106,8 @@ def read_measurements(path: str | Path) -> list[Measurement]:
     """Read a benchmark file.
 
     Raises:
-        InputError: it is missing, no list, or an entry's key (named) is missing or unusable.
+        InputError: the file is missing or not a list, or a key of an entry is missing or unusable;
+            the message names it.
     """
     content = read_json(path)
     if not isinstance(content, list):
@@ -125,12 +126,12 @@ def read_measurements(path: str | Path) -> list[Measurement]:
 def merge(
     measurements: Sequence[Measurement], into: Sequence[Measurement], order: Sequence[str]
 ) -> list[Measurement]:
-    """Put measurements in place of those of the same names; what else there was stays.
+    """Replace measurements of the same names, and keep the others.
 
     Args:
-        measurements: the new ones.
-        into: the old ones.
-        order: of names; what it does not name comes last.
+        measurements: new measurements.
+        into: old measurements.
+        order: order of names; other names come last.
     """
     places = {name: place for place, name in enumerate(order)}
     merged = {each.name: each for each in (*into, *measurements)}
@@ -138,7 +139,7 @@ def merge(
 
 
 def this_machine() -> str:
-    """Return what the figures were measured on: processor, cores, and devices beside it."""
+    """Return a description of this machine: processor, cores and other devices."""
     name = platform.processor() or platform.machine()
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()

@@ -1,8 +1,9 @@
-"""Random start-goal pairs on one terrain: LEAS with a roadmap against RB-Kino with the same.
+"""Random start-goal pairs on one terrain: LEAS and RB-Kino with the same roadmap search.
 
     python benchmarks/navigation.py runs/leas_p1 --terrain arena.stl --json out.json
 
-Interrupted, it goes on where it stopped: each pair is kept in OUT.partial.jsonl until all are done.
+After an interruption it continues where it stopped: pairs are kept in OUT.partial.jsonl until all
+are done.
 """
 
 import argparse
@@ -35,7 +36,7 @@ METHODS: dict[str, str] = {"leas_p1": "leas", "rb_kino": "kino"}
 TITLES = {"leas_p1": "LEAS", "rb_kino": "RB-Kino"}
 COLOURS = {"leas_p1": PATH, "rb_kino": "tab:orange"}
 CLEARANCE = 0.3
-"""Ends of pairs lie on ground that goes on so far around [m]: not on top of a box."""
+"""Extent of the ground around each end of a pair [m], so that none is on top of a box."""
 HOURS = 3600.0
 BUDGETS = (50, 100, 200)
 """Smaller budgets whose results follow from the same searches [connections]."""
@@ -43,16 +44,17 @@ BUDGETS = (50, 100, 200)
 
 @dataclass(frozen=True)
 class Row:
-    """One pair and method.
+    """The result of one method on one pair.
 
     Attributes:
         pair: number of the pair.
-        method: its name.
-        reached: the goal, each configuration valid, by the exact conditions too.
-        waypoints: between start and goal.
-        connections: that the search asked for.
-        seconds: it took.
-        length: of the path [m].
+        method: name of the method.
+        reached: whether the goal was reached with each configuration valid, also by the exact
+            conditions.
+        waypoints: number of waypoints between start and goal.
+        connections: number of connections that the search asked for.
+        seconds: duration of the search [s].
+        length: length of the path [m].
         walking: time along the path [s].
     """
 
@@ -75,14 +77,14 @@ def draw_pairs(places: Places, seed: int, count: int) -> np.ndarray:
 def navigate_pair(
     navigator: Navigator, pair: np.ndarray, index: int, connections: int
 ) -> Navigation:
-    """Answer one pair, by the same budget and the same samples whatever the method."""
+    """Return the answer to one pair, with the same budget and samples for every method."""
     start, goal = (tuple(map(float, each)) for each in pair)
     motion = start_motion(navigator.connector.places, start, goal, None)  # type: ignore[arg-type]
     return navigator.navigate(motion, np.array(goal), Budget(HOURS, connections), seed=index)
 
 
 def within(rows: Sequence[Row], method: str, connections: int) -> list[Row]:
-    """Return a method's rows as a smaller budget would have left them."""
+    """Return the rows of a method that a smaller budget would have given."""
     return [
         row if row.connections <= connections else replace(row, reached=False)
         for row in rows
@@ -116,7 +118,7 @@ def cell(name: str, method: str, rows: Sequence[Row]) -> CellResult:
 
 
 def summary(rows: Sequence[Row], count: int) -> str:
-    """Return the table, and the comparison on the pairs that both methods solved."""
+    """Return the table and the comparison on the pairs that both methods solved."""
     lines = [
         f"{'method':10}{'reached':>10}{'direct':>8}{'waypoints':>11}{'connections':>13}{'s':>7}"
     ]
@@ -148,7 +150,7 @@ def _mean(values) -> float:
 
 
 def draw(path: Path, places: Places, rows: Sequence[Row], pairs: np.ndarray, limit: int) -> None:
-    """Draw success against connections, waypoints against each other, and all pairs."""
+    """Draw success against connections, the methods' numbers of waypoints, and all pairs."""
     from matplotlib.figure import Figure
 
     from jaxleas.terrain.draw import draw_height_map
@@ -204,15 +206,15 @@ def draw(path: Path, places: Places, rows: Sequence[Row], pairs: np.ndarray, lim
 
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
-    """Return the options."""
+    """Return the parsed options."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("policy", type=Path, help="a run folder, a policy.npz or an .onnx")
     parser.add_argument("--terrain", type=Path, required=True)
     parser.add_argument("--pairs", type=int, default=200)
-    parser.add_argument("--connections", type=int, default=500, help="of each search [500]")
+    parser.add_argument("--connections", type=int, default=500, help="limit of each search [500]")
     parser.add_argument("--planner", choices=("rrt", "prm"), default="rrt")
     parser.add_argument("--methods", nargs="+", choices=tuple(METHODS), default=tuple(METHODS))
-    parser.add_argument("--reach", type=float, help="of a tree's edges, of all methods alike [m]")
+    parser.add_argument("--reach", type=float, help="length of a tree's edges for all methods [m]")
     parser.add_argument("--seed", type=int, default=EVALUATION_SEED)
     parser.add_argument("--json", type=Path, required=True)
     parser.add_argument("--picture", type=Path)

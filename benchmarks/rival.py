@@ -1,4 +1,4 @@
-"""Runs the rival in its own Python, on the same task, and reads what it measured."""
+"""The rival, run in its own Python on the same task, and its measurements."""
 
 import importlib.util
 import json
@@ -23,15 +23,15 @@ HOW = "install the extra `rivals`, or name a Python that has it: --rivals PYTHON
 
 
 def is_installed() -> bool:
-    """Tell whether this Python has the rival."""
+    """Return whether this Python has the rival."""
     return all(importlib.util.find_spec(name) for name in MODULES)
 
 
 def require_rival(python: str) -> None:
-    """Make sure that a Python has the rival.
+    """Require that a Python has the rival.
 
     Raises:
-        InputError: it cannot be run, or lacks a package.
+        InputError: the Python cannot be run, or lacks a package.
     """
     code = f"import importlib.util as u; print(*[n for n in {MODULES!r} if not u.find_spec(n)])"
     try:
@@ -44,13 +44,13 @@ def require_rival(python: str) -> None:
 
 
 class Rival:
-    """Stable-Baselines3 in a process of its own; each figure is measured when first asked for.
+    """Stable-Baselines3 in a separate process; each figure is measured on first use.
 
     Args:
-        python: that has it; None: there is no rival, and every figure is None.
-        env: the task.
-        world: its terrain.
-        runs: of each figure.
+        python: Python interpreter with the rival; None if there is none: then every figure is None.
+        env: environment of the task.
+        world: terrain of the task.
+        runs: number of runs of each figure.
     """
 
     def __init__(self, python: str | None, env: SteeringEnv, world: World, runs: int) -> None:
@@ -85,7 +85,7 @@ class Rival:
 
 
 def write_task(path: str | Path, env: SteeringEnv, world: World) -> None:
-    """Write a task as plain numbers, for programs that share no code with ours."""
+    """Write a task as plain numbers, for programs that share no code with this package."""
     constants: dict[str, Any] = {
         **env.config.model_dump(mode="json", exclude={"limits"}),
         **env.config.limits.model_dump(mode="json"),

@@ -17,15 +17,15 @@ from jaxleas.training.devices import Devices
 from jaxleas.training.run_config import AnyRun
 
 LARGE = 2048  # side of the large matrices
-PASSES = 8  # over memory within one call, so that starting it costs nothing
+PASSES = 8  # passes over memory in one call, so that the start of the call does not count
 RUNS = 3
 
 
 class Roofs:
-    """Measures each roof once, when it is first asked for.
+    """The machine's roofs, each measured once, on first use.
 
     Args:
-        atlas: to gather from.
+        atlas: atlas to gather heights from.
     """
 
     def __init__(self, atlas: Atlas) -> None:
@@ -33,12 +33,12 @@ class Roofs:
         self._known: dict[tuple[object, ...], float] = {}
 
     def rates(self, config: AnyRun, env: SteeringEnv, robots: int, matrix: bool) -> Rates:
-        """Return what the machine does at these sizes.
+        """Return the machine's rates at given sizes.
 
         Args:
-            config: of the training; its networks' own products are measured.
-            env: the task; its own gather is measured.
-            robots: environments at once: they set what fits into a cache.
+            config: configuration of the training, whose networks' products are measured.
+            env: environment of the task, whose gather is measured.
+            robots: number of environments, which determines what fits into a cache.
             matrix: whether the rate of products is needed (it is infinite otherwise).
         """
         words = robots * (len(env.points_in_root) + env.layout.size)
@@ -53,22 +53,22 @@ class Roofs:
         )
 
     def large_products(self, numbers: str) -> float:
-        """Return the rate of large matrix products in such numbers [FLOP/s]."""
+        """Return the rate of large matrix products in a number format [FLOP/s]."""
         return self._once(("large", numbers), lambda: _large_products(numbers))
 
     def network_products(self, config: AnyRun, env: SteeringEnv) -> float:
-        """Return the rate of the products of one minibatch's gradient, and of nothing else."""
+        """Return the rate of only the products of one minibatch's gradient."""
         samples = config.ppo.batch // config.ppo.minibatches
         sizes = (samples, env.layout.size, *config.network.hidden)
         numbers = config.network.product_type
         return self._once(("network", numbers, *sizes), lambda: _network_products(numbers, *sizes))
 
     def memory(self, words: int) -> float:
-        """Return the bandwidth over an array of so many four-byte words [B/s]."""
+        """Return the bandwidth over an array of a number of four-byte words [B/s]."""
         return self._once(("memory", words), lambda: _memory(words))
 
     def gather(self, env: SteeringEnv, robots: int) -> float:
-        """Return how many heights a second are gathered under so many robots."""
+        """Return the heights per second that are gathered under a number of robots."""
         key = ("gather", env.layout.name, robots)
         return self._once(key, lambda: _gather(self._atlas, env, robots))
 
@@ -88,7 +88,7 @@ def _normal(numbers: str, seed: int, *shape: int) -> Array:
 
 
 def _by_all_devices(rate: Callable[[Devices], float]) -> float:
-    """Return the better of one device's rate and all devices', each with a part of its own."""
+    """Return the better of the rates of one device and of all devices, each with its own part."""
     every = Devices.of(jax.devices())
     return max(rate(Devices.of(jax.devices()[:1])), rate(every) if len(every) > 1 else 0.0)
 
@@ -111,7 +111,7 @@ def _large_products(numbers: str) -> float:
 
 
 def _network_products(numbers: str, samples: int, inputs: int, *hidden: int) -> float:
-    """Time three products a layer, operands ready: forward, weights' and inputs' gradients."""
+    """Time three products per layer, operands ready: forward, weights' and inputs' gradients."""
     networks = [layers(inputs, hidden, outputs) for outputs in (LOGITS, 1)]
     flops = samples * sum(gradient_flops(network) for network in networks)
     return _by_all_devices(lambda devices: flops / _products(numbers, networks, samples, devices))
@@ -187,7 +187,7 @@ def _gather(atlas: Atlas, env: SteeringEnv, robots: int) -> float:
 
 
 def _height_indices(atlas: Atlas, env: SteeringEnv, robots: int) -> Array:
-    """Return where the points of robots at random places of the atlas lie in its flat array."""
+    """Return the indices, in the flat atlas, of the points of robots at random places."""
     random = np.random.default_rng(0)
     maps, rows, columns = atlas.heights.shape
     yaw = random.uniform(-np.pi, np.pi, (robots, 1))

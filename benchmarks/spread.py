@@ -1,4 +1,4 @@
-"""What is measured is divided among the devices as a training is."""
+"""Measurements divided among the devices, as in training."""
 
 import jax
 
@@ -7,6 +7,6 @@ from jaxleas.training.devices import Devices
 
 
 def all_devices(count: int) -> Devices:
-    """Return JAX's devices, as many as share so many robots evenly."""
+    """Return the largest number of JAX's devices that share a number of robots evenly."""
     there = jax.devices()
     return Devices.of(there[: most_that_divide(count, len(there))])

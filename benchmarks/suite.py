@@ -10,14 +10,14 @@ from jaxleas.types.errors import InputError
 
 
 def choose(only: Sequence[str], quick: bool) -> list[Metric]:
-    """Return the metrics that are asked for.
+    """Return the selected metrics.
 
     Args:
-        only: names, or parts of names, as `env_` or `compile`; none: all.
-        quick: leave out the slow ones, unless nothing else was asked for.
+        only: names, or parts of names, such as `env_` or `compile`; empty for all.
+        quick: leave out the slow metrics, unless only slow ones were selected.
 
     Raises:
-        InputError: nothing has such a name.
+        InputError: no metric has such a name.
     """
     metrics = [metric for workload in WORKLOADS for metric in workload.metrics]
     for part in only:
@@ -42,10 +42,10 @@ def measure(
     """Measure metrics, each workload once, in the order of the catalogue.
 
     Args:
-        metrics: to be measured.
-        context: of this run.
-        tell: is told what is measured now.
-        workloads: that measure them.
+        metrics: metrics to measure.
+        context: context of the run.
+        tell: function called with a description of the current measurement.
+        workloads: workloads that measure the metrics.
     """
     machine = this_machine()
     wanted = {metric.name for metric in metrics}

@@ -1,4 +1,4 @@
-"""One table of all that was measured."""
+"""One table of all measurements."""
 
 from collections.abc import Sequence
 
@@ -28,14 +28,14 @@ def show(rows: Sequence[tuple[Measurement, Comparison]], machine: str) -> None:
             _against(comparison),
             style=STYLES[comparison.verdict],
         )
-    # Wide enough for a file, where no terminal says how wide it is.
+    # Wide enough for a file, where there is no terminal's width.
     console = Console()
     console = console if console.is_terminal else Console(width=140)
     console.print(table)
 
 
 def number(value: float | None) -> str:
-    """Return a value as people read it: 1,234,000 or 12.3; "never" for None."""
+    """Return a readable value: 1,234,000 or 12.3; "never" for None."""
     if value is None:
         return "never"
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"

@@ -1,4 +1,4 @@
-"""Timing: warm up once, then a few runs, each long enough to mean something."""
+"""Timing: one warm-up, then a few runs, each long enough to be meaningful."""
 
 import math
 import time
@@ -11,19 +11,19 @@ from jaxleas.training.loop import MOST_AHEAD
 
 
 def seconds_a_call(call: Callable[[], Any], runs: int, least_seconds: float = 0.5) -> list[float]:
-    """Return the seconds a call takes, one mean a run.
+    """Return the seconds that a call takes, one mean per run.
 
     Args:
-        call: may return before the device is done; what it returns is waited for.
+        call: function to time; it may return before the device is done; its results are awaited.
         runs: number of runs.
-        least_seconds: a run repeats the call for about this long [s].
+        least_seconds: approximate duration of a run, which repeats the call [s].
     """
     jax.block_until_ready(call())  # compiles
     begin = time.perf_counter()
     jax.block_until_ready(call())
     once = time.perf_counter() - begin
     repeats = max(1, math.ceil(least_seconds / max(once, 1e-7)))
-    if repeats > 1:  # a single short call is timed too long: its first estimate is refined
+    if repeats > 1:  # a single short call seems too long: its first estimate is refined
         repeats = max(1, math.ceil(least_seconds / max(_mean(call, min(repeats, 10)), 1e-7)))
     return [_mean(call, repeats) for _ in range(runs)]
 
@@ -38,7 +38,7 @@ def _mean(call: Callable[[], Any], repeats: int) -> float:
 
 
 def not_far_ahead(call: Callable[[], Any]) -> Callable[[], Any]:
-    """Return a call that waits for what earlier ones returned, as a training does."""
+    """Return a call that waits for the results of earlier ones, as training does."""
     ahead: list[Any] = []
 
     def patient() -> Any:

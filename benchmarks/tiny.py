@@ -1,4 +1,4 @@
-"""The smallest training that is a whole one: seconds long, with checkpoints and examinations."""
+"""The smallest complete training: seconds long, with checkpoints and examinations."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ BATCH = 64 * 10
 
 
 def tiny_training(updates: int = 8) -> dict[str, Any]:
-    """Return its configuration, as a file states it."""
+    """Return the configuration of the training, as in a file."""
     return {
         "terrain": {"arenas": 2, "generator": {"rows": 3, "columns": 3}},
         "network": {"hidden": [16, 16]},

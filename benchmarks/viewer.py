@@ -1,4 +1,4 @@
-"""The viewer as a person meets it: time to the first picture, frames a second while driving.
+"""The viewer for a user: time to the first picture, frames per second while driving.
 
     python -m benchmarks.viewer runs/leas_p1 --terrain scene.json --json viewer.json
 
@@ -27,7 +27,7 @@ from jaxleas.viewer.ground import SKY_ABOVE, SKY_BELOW
 from tests.browser import chromium, wait_until
 
 SECONDS = 10.0
-"""Of driving that are counted."""
+"""Duration of driving that is counted [s]."""
 GOAL_FPS, GOAL_SECONDS = 30.0, 3.0
 COUNT_PICTURES = """
 window.pictures = [], window.grounds = 0;
@@ -47,8 +47,8 @@ const look = (now) => {
 };
 requestAnimationFrame(look);
 """
-"""Keeps the times of the frames in which the canvas was drawn, and counts those with the ground,
-whose indices have 32 bits, unlike those of viser's own."""
+"""A script that keeps the times of the frames in which the canvas was drawn, and counts those with
+the ground, whose indices have 32 bits, unlike those of viser's own meshes."""
 
 
 def frames_sent(address: str, seconds: float) -> int:
@@ -70,7 +70,7 @@ def frames_sent(address: str, seconds: float) -> int:
                 packed = socket.recv(timeout=1.0)
             except (TimeoutError, ConnectionClosed):
                 break
-            if not begin and now > deadline - 1.0:  # what came before is the scene itself
+            if not begin and now > deadline - 1.0:  # earlier messages are the scene itself
                 begin, count = now, 0
             assert isinstance(packed, bytes)
             size = int.from_bytes(packed[8:16], "little")
@@ -81,7 +81,7 @@ def frames_sent(address: str, seconds: float) -> int:
 
 @contextmanager
 def viewing(policies: Sequence[Path], terrain: Path) -> Iterator[tuple[str, float]]:
-    """Yield the page's address, and how long it took until it was there [s]."""
+    """Yield the page's address, and the time until it was available [s]."""
     command = [sys.executable, "-m", "jaxleas.cli", "view", str(terrain), "--port", "0"]
     command += ["--no-browser", "--policies", *map(str, policies)]
     begin = time.perf_counter()
@@ -100,7 +100,7 @@ def viewing(policies: Sequence[Path], terrain: Path) -> Iterator[tuple[str, floa
 
 
 def is_drawn(page: Any) -> bool:
-    """Whether the ground is to be seen: the middle of the picture is not all background."""
+    """Return whether the ground is visible: the middle of the picture is not all background."""
     from io import BytesIO
 
     from PIL import Image
@@ -114,12 +114,12 @@ def is_drawn(page: Any) -> bool:
 
 
 def first_picture(page: Any, policies: Sequence[Path], terrain: Path) -> tuple[float, float]:
-    """Return seconds from the command, and from opening the page, to the first picture."""
+    """Return the seconds from the command, and from opening the page, to the first picture."""
     with viewing(policies, terrain) as (address, started):
         begin = time.perf_counter()
         page.get(address)
-        # With the third frame begun the first is on the screen; a picture of the screen, which
-        # would delay it, is taken only then.
+        # When the third frame begins the first is on the screen; a screenshot, which would delay
+        # it, is taken only then.
         wait_until(
             lambda: page.execute_script("return window.grounds > 2"),
             "the ground is drawn",
@@ -132,7 +132,7 @@ def first_picture(page: Any, policies: Sequence[Path], terrain: Path) -> tuple[f
 
 
 def driving(page: Any, policies: Sequence[Path], terrain: Path) -> tuple[float, float, float]:
-    """Return, while robots walk: frames sent and pictures painted a second, and the longest pause.
+    """Return frames sent and pictures painted per second, and the longest pause, while robots walk.
 
     A key sends the robots ahead.
     """

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.cli_options import add_options
 
-# What a person types -> (the room's module, its function, what it is for).
+# Command -> (the room's module, its function, its purpose).
 COMMANDS = {
     "terrain show": ("jaxleas.terrain.commands", "show", "draw a terrain as a picture"),
     "terrain import": (
@@ -71,7 +71,7 @@ COMMANDS = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Answers a mistake with one sentence; takes `--from -1,2` for a place, not for two options."""
+    """A parser that reports a mistake in one sentence, and reads `--from -1,2` as one place."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)

@@ -1,4 +1,4 @@
-"""From an exception to what a person at a terminal wants: one sentence and an exit code."""
+"""From an exception to one sentence and an exit code for a user at a terminal."""
 
 import errno
 import os
@@ -11,25 +11,25 @@ from jaxleas.runs.swallowed import interrupts_kept
 FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
-# A full disk, a name that no file can have, files that are not ours to read or write.
+# A full disk, a name that no file can have, files without permission to read or write.
 _NOT_OUR_DOING = (*(errno.ENOSPC, errno.EDQUOT, errno.ENAMETOOLONG), *(errno.EACCES, errno.EROFS))
 
 
 class UsageError(Exception):
-    """The command line itself is wrong; raised where importing JAX for a sentence is too slow."""
+    """A wrong command line; raised where importing JAX for a sentence would be too slow."""
 
 
 def run_guarded(main: Callable[[], None]) -> int:
     """Run `main` and return the exit code of the process.
 
-    A `JaxleasError`, a wrong command line, a full disk and files that are not ours to touch become
-    one sentence on standard error and exit code 2 (or the error's own `exit_code`); Ctrl-C is quiet
-    and gives 130, also where Python throws it away at first; anything else is a bug of ours and
-    keeps its traceback. With `--traceback` on the command line, or JAXLEAS_TRACEBACK set, every
-    error keeps it.
+    A `JaxleasError`, a wrong command line, a full disk and files without permission become one
+    sentence on standard error and exit code 2 (or the error's own `exit_code`); Ctrl-C is quiet
+    and gives 130, even where Python discards it at first; anything else is a bug and keeps its
+    traceback. With `--traceback` on the command line, or JAXLEAS_TRACEBACK set, every error keeps
+    it.
 
     Args:
-        main: what to run; reads `sys.argv` only when called, since `--traceback` is taken out.
+        main: function to run; it reads `sys.argv` only when called, after `--traceback` is removed.
     """
     wants_traceback = bool(os.environ.get("JAXLEAS_TRACEBACK"))
     if "--traceback" in sys.argv:
@@ -41,7 +41,7 @@ def run_guarded(main: Callable[[], None]) -> int:
         sys.stdout.flush()
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:  # as in `jaxleas ... | head`: nobody listens any more
+    except BrokenPipeError:  # as in `jaxleas ... | head`: the reader has closed the pipe
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except Exception as error:

@@ -9,15 +9,15 @@ from typing import Any
 
 
 def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -> None:
-    """Add what `function` takes to `parser`.
+    """Add the parameters of a function to a parser.
 
     The first parameter, if it may be given by position and has no default, becomes a positional
     argument, and so does everything before a `*`; every other parameter an option `--its-name`,
     required if it has no default.
 
     Args:
-        parser: gets the options, and its description from the docstring's first line.
-        function: annotated with numbers, text, paths, booleans, literals, and optional or
+        parser: parser that gets the options, and its description from the docstring's first line.
+        function: function annotated with numbers, text, paths, booleans, literals, and optional or
             sequence types of these; the help of an `Annotated[str, REGISTRY]` lists its names.
     """
     text = inspect.getdoc(function) or ""
@@ -72,7 +72,7 @@ def _options_of_type(annotation: Any) -> dict[str, Any]:
 
 
 def _plainest(members: list[Any]) -> Any:
-    """Return the member of a union that is to be read: for `str | Path` either does."""
+    """Return the member of a union that arguments are parsed as: for `str | Path` either works."""
     return next((each for each in members if each is not str), str)
 
 

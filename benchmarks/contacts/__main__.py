@@ -1,4 +1,4 @@
-"""Measure the exact contact planners, and draw the thesis's figures from what was measured.
+"""Measure the exact contact planners, and draw the thesis's figures from the measurements.
 
 python -m benchmarks.contacts PART ... [--reference FILE --polytopes FILE] [--patience S]
 
@@ -24,7 +24,7 @@ PARTS = ("reference", "course", "samples", "pictures")
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Measure the parts that are asked for."""
+    """Measure the selected parts."""
     given = _parser().parse_args(arguments)
     if "reference" in given.parts and not (given.reference and given.polytopes):
         raise UsageError("the part reference needs --reference and --polytopes")

@@ -1,7 +1,7 @@
-"""Planning with and without a guide over path length (T table 5.1).
+"""Planning with and without a guide, by path length (T table 5.1).
 
-The course is our own terrain in the manner of T figure 5.4: rubble, a bridge and three stairs in a
-row, crossed along its middle in 94 steps of 22 cm; the shorter paths are its first steps.
+The course is our own terrain, similar to T figure 5.4: rubble, a bridge and three stairs in a row,
+crossed along its middle in 94 steps of 22 cm; the shorter paths are its first steps.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ KINDS = ("rubble", "bridge", "stairs_up", "stairs_down", "stairs_up")
 LENGTHS = (18, 36, 56, 74, 94)  # steps
 THESIS_WITH = (30, 75, 120, 218, 292)  # [ms], Gurobi
 THESIS_WITHOUT = (330, 3400, 4700, 27200, 31000)
-LIMITS = {18: 60.0, 94: 1000.0}  # [ms], which this project set itself
+LIMITS = {18: 60.0, 94: 1000.0}  # [ms], this project's own targets
 ABOVE_GROUND, BEGIN, LENGTH = 0.95, 0.5, 20.5  # [m]
 
 
@@ -27,7 +27,7 @@ def long_course(seed: int = 0) -> tuple[Scene, np.ndarray]:
     for index, kind in enumerate(KINDS):
         scene = transition(kind, seed + index).scene
         parts = list(scene.surfaces.items())
-        if index:  # its first tile is the last one of what came before
+        if index:  # its first tile is the last one of the terrain before
             parts = parts[1:]
         for name, vertices in parts:
             surfaces[f"{index}_{name}"] = vertices + shift
@@ -49,9 +49,9 @@ def course_problem(scene: Scene, roots: np.ndarray, steps: int) -> ContactProble
 
 
 def with_and_without_guide(patience: float) -> Iterator[Row]:
-    """Plan each length with guide, five times, and without, once and at most `patience` [s].
+    """Plan each length with a guide, five times, and without, once and for at most `patience` [s].
 
-    The value is null where there was no answer in that time.
+    The value is null if there was no answer in that time.
     """
     scene, roots = long_course()
     for steps, ours, theirs in zip(LENGTHS, THESIS_WITH, THESIS_WITHOUT, strict=True):

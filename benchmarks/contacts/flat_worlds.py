@@ -1,4 +1,4 @@
-"""Contact problems on level rectangles, with steps that are boxes: answers known by hand."""
+"""Contact problems on level rectangles with boxes of steps, whose answers are known by hand."""
 
 REACH = {  # a box: 0.3 m forwards and backwards, 0.15 to 0.4 m aside, 0.2 m up and down
     "A": [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
@@ -31,7 +31,7 @@ def content(
     model: str = "two_com",
     **changes,
 ) -> dict:
-    """Return a contact problem as its file has it, from feet at (0, +-0.1), left foot first."""
+    """Return the content of a contact problem's file, from feet at (0, +-0.1), left foot first."""
     feet = ("LF", "RF")
     return {
         "robot": "talos",

@@ -1,4 +1,4 @@
-"""What the L1 norm does (T 5.3.2): the cost map and the worked scenarios A.1, A.2 and B."""
+"""The effect of the L1 norm (T 5.3.2): the cost map and the scenarios A.1, A.2 and B."""
 
 import numpy as np
 from jaxtyping import Float
@@ -23,7 +23,7 @@ def cost_map(
 
 
 def scenario_a(gap: float) -> dict:
-    """Two steps to S4; for the first, S2 and S3, which are `gap` apart (T figs. 5.11, 5.12)."""
+    """Return A.1: two steps to S4, the first on S2 or S3, `gap` [m] apart (T figs. 5.11, 5.12)."""
     surfaces = {
         **START,
         "S2": rectangle(0.05, 0.25, -0.2, 0.3),
@@ -34,7 +34,7 @@ def scenario_a(gap: float) -> dict:
 
 
 def scenario_a2() -> dict:
-    """As A.1, further apart; S5 makes the place of least cost between them the only one."""
+    """Return A.2: as A.1, further apart; S5 leaves only the place of least cost between them."""
     surfaces = {
         **START,
         "S2": rectangle(0.0, 0.1, -0.2, 0.1),
@@ -46,7 +46,7 @@ def scenario_a2() -> dict:
 
 
 def scenario_b() -> dict:
-    """Five steps over ten surfaces; two of them among six islands (T fig. 5.13)."""
+    """Return B: five steps over ten surfaces, two of them among six islands (T fig. 5.13)."""
     islands = {
         f"S{4 + index}": rectangle(x, x + 0.12, y, y + 0.12)
         for index, (x, y) in enumerate(

@@ -1,4 +1,4 @@
-"""The thesis's figures, drawn again: table 5.1, figure 4.5, figures 5.10 to 5.13."""
+"""The thesis's table 5.1 and figures 4.5 and 5.10 to 5.13, drawn from our measurements."""
 
 from collections.abc import Sequence
 from pathlib import Path

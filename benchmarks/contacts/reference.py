@@ -1,4 +1,4 @@
-"""Both planners on problems whose verdicts are known from outside."""
+"""Both planners on problems with independent verdicts."""
 
 import gzip
 import json
@@ -16,14 +16,14 @@ MODELS = ("two_com", "feet")
 
 
 def on_reference(problems: Path, polytopes: Path) -> Iterator[Row]:
-    """Judge both planners on the robust entries, a model after the other.
+    """Judge both planners on the robust entries, one model after the other.
 
     A problem's time is the median of three runs; the figures are over problems. The rival of
     `sl1m_solved` is the published SL1M code, model feet.
 
     Args:
-        problems: contact-problems.jsonl.gz.
-        polytopes: talos-polytopes.json.
+        problems: file of the contact problems, contact-problems.jsonl.gz.
+        polytopes: file of the step polytopes, talos-polytopes.json.
     """
     with gzip.open(problems, "rt") as stream:
         entries = [json.loads(line) for line in stream]

@@ -10,15 +10,15 @@ from benchmarks.measurements import Better, Figure, Measurement, Metric
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured.
+    """One measured figure.
 
     Attributes:
-        name: begins with contacts_.
-        unit: of the value.
-        runs: one value a run, whose median counts; None where a run never got there.
-        rival: what others reach.
-        limit: what this project wants to reach.
-        better: the direction that is good.
+        name: name, which begins with contacts_.
+        unit: unit of the value.
+        runs: one value per run, whose median counts; None for a run that never got there.
+        rival: value of other software.
+        limit: target of this project.
+        better: direction of better values.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Row:
 
 
 def milliseconds(run: Callable[[], Any], repeats: int) -> tuple[list[float], Any]:
-    """Return the time of each run [ms], and what the last returned."""
+    """Return the time of each run [ms], and the last run's result."""
     times, answer = [], None
     for _ in range(repeats):
         begin = time.perf_counter()

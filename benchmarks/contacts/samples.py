@@ -2,7 +2,7 @@
 
 On stairs up, as in T 4.1.4, but with straight guides at a steady speed instead of RB-Kino's: from
 uniform starts at the bottom to the top, at walking height over the slope of the stairs. Success is
-the share of a guide that is reached; the time is that of guides reached whole, one by one.
+the share of a guide that is reached; the time is that of completely reached guides, one by one.
 """
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
 SAMPLES = (1_000, 2_500, 5_000, 10_000, 25_000, 50_000)
-KEPT = (1, 3, 5, 7, 10)  # one configuration in so many, 2 cm apart
+KEPT = (1, 3, 5, 7, 10)  # configurations, 2 cm apart, from one kept to the next
 FINE = 5  # while the number of samples varies: 10 cm
 TERRAIN_SEEDS = (1_700_001, 1_700_002, 1_700_003)  # held-out terrain
 STAIRS = (1.85, 3.85)  # where the slope begins and ends [m]
@@ -46,10 +46,10 @@ def _straight(start: np.ndarray, goal: np.ndarray, top: float) -> GuidePath:
 
 
 def against_samples_and_step(count: int) -> Iterator[Row]:
-    """Measure both curves; a run is one seed of terrain, starts and data base.
+    """Measure both curves; a run is one seed of terrain, starts and database.
 
     Args:
-        count: guides a seed.
+        count: number of guides per seed.
     """
     for samples in SAMPLES:
         yield from _rows(f"contacts_sampling_{samples}_samples", samples, FINE, count)
@@ -63,10 +63,11 @@ def _rows(name: str, samples: int, kept: int, count: int) -> Iterator[Row]:
     for number, seed in enumerate(TERRAIN_SEEDS):
         settings = SamplingSettings(samples=samples, seed=number, keep_every=kept)
         scene, guides = guides_up_stairs(seed, count)
-        plan_contacts(scene, guides[0], settings)  # makes the data base
+        plan_contacts(scene, guides[0], settings)  # makes the database
         plans = [plan_contacts(scene, guide, settings) for guide in guides]
         success.append(100.0 * float(np.mean([plan.reached for plan in plans])))
         whole = [1000.0 * plan.seconds for plan in plans if plan.success]
         times += [float(np.mean(whole))] if whole else []
     yield Row(f"{name}_success", "%", success, better="higher")
-    yield Row(f"{name}_time", "ms", times or [None])  # of the seeds where some guide is reached
+    # From the seeds with a completely reached guide.
+    yield Row(f"{name}_time", "ms", times or [None])

@@ -1,4 +1,4 @@
-"""The NumPy task as Stable-Baselines3 wants it: one batch at once, or one Gymnasium environment."""
+"""The NumPy task for Stable-Baselines3: as a batch, or as one Gymnasium environment."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ def spaces(task: Task, size: int) -> tuple[Any, Any]:
 
 
 def scaling(task: Task, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return what to take off and to divide by, so that observations lie within [-1, 1]."""
+    """Return the offset and divisor that bring observations to [-1, 1]."""
     constants = task.constants
     low, high = constants["height_low"], constants["height_high"]
     centre = np.full(size, (low + high) / 2, np.float32)
@@ -79,7 +79,7 @@ class BatchedSteering(VecEnv):
 
 
 class SingleSteering(gymnasium.Env):
-    """One robot, as most people would write it; six of them were the thesis's set-up."""
+    """One robot, in the usual form; the thesis used six of them."""
 
     def __init__(self, task: Task, seed: int = 0) -> None:
         self.batch = SteeringBatch(task, 1, seed)

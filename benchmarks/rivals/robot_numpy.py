@@ -1,4 +1,4 @@
-"""What the robot's shape means for the points around it, in NumPy, from its plain numbers."""
+"""The robot's shape over the points around it, in NumPy, from plain numbers."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def footprint(trunk: list[dict[str, list[float]]]) -> np.ndarray:
 def reach_intervals(
     limbs: list[dict[str, Any]], points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return points under the root, one entry a leg, and the span of z that it reaches there."""
+    """Return points under the root, one entry per leg, and the range of z that it reaches there."""
     found = []
     for index in np.flatnonzero(np.all(np.abs(points) <= UNDER_ROOT, axis=1)):
         for limb in limbs:

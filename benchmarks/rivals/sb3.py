@@ -1,4 +1,4 @@
-"""Stable-Baselines3 on the steering task, timed; runs in a Python of its own.
+"""Timings of Stable-Baselines3 on the steering task, in a separate Python.
 
 python -m benchmarks.rivals.sb3 TASK.npz OUT.json [--runs N] [--measure NAME ...]
 """
@@ -28,14 +28,14 @@ from benchmarks.rivals.task import Task, read_task
 
 SIX = 6  # parallel agents M (T table 3.1)
 BATCH = 4096 * SIX  # steps between two updates (T table 3.1)
-TRIAL = 8  # part of a batch that is enough to tell which way is faster
+TRIAL = 8  # an 8th of a batch is enough to find the faster way
 BATCHED = 96  # robots of the batched environment: 256 steps each
 THREADS = torch.get_num_threads()
-ENV_SIZES = (96, 1024)  # robots for the environment alone: the better one counts
+ENV_SIZES = (96, 1024)  # robots for the environment alone: the better size counts
 
 
 class _Clock(BaseCallback):
-    """Notes when each roll-out begins: from one to the next, an update is walked and learnt."""
+    """A callback that records the start of each roll-out; one update lies between two starts."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,9 +66,9 @@ def make_ppo(envs: VecEnv, batch: int = BATCH) -> PPO:
 
 
 def best_train_rates(ways: list[Callable[[], VecEnv]], runs: int) -> list[float]:
-    """Return `train_rates` of the best way, with one thread or as many as torch takes.
+    """Return `train_rates` of the fastest way, with one thread or as many as torch uses.
 
-    A short trial of each says which is the best.
+    A short trial of each way finds the fastest one.
     """
     trials = []
     for threads in {1, THREADS}:
@@ -80,7 +80,7 @@ def best_train_rates(ways: list[Callable[[], VecEnv]], runs: int) -> list[float]
 
 
 def train_rates(envs: VecEnv, runs: int, batch: int) -> list[float]:
-    """Return steps of training a second, one value an update, the first left out."""
+    """Return the training steps per second, one value per update, without the first."""
     clock = _Clock()
     make_ppo(envs, batch).learn((runs + 1) * batch, callback=clock)
     ends = [*clock.begins[1:], time.perf_counter()]
@@ -89,7 +89,7 @@ def train_rates(envs: VecEnv, runs: int, batch: int) -> list[float]:
 
 
 def env_rates(task: Task, runs: int) -> list[float]:
-    """Return steps a second of the environment alone, under random actions: of the best size."""
+    """Return the steps per second of the environment alone, random actions, at its best size."""
     return max((_env_rates(task, count, runs) for count in ENV_SIZES), key=np.median)
 
 
@@ -110,7 +110,7 @@ def _env_rates(task: Task, count: int, runs: int) -> list[float]:
 
 
 def latencies(task: Task, runs: int, count: int) -> list[float]:
-    """Return the microseconds that `predict` takes, with one thread or many: the better."""
+    """Return the duration of `predict` [us], with one thread or many, whichever is faster."""
     found = []
     for threads in {1, THREADS}:
         torch.set_num_threads(threads)
@@ -134,13 +134,13 @@ def _latencies(task: Task, runs: int, count: int) -> list[float]:
 
 
 def peak_memory(task: Task) -> list[float]:
-    """Return the most memory this process has held so far, after an update [MiB]."""
+    """Return the peak memory of this process after an update [MiB]."""
     train_rates(BatchedSteering(task, BATCHED), 1, BATCH)
     return [resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0]
 
 
 def six_environments(task: Task, runs: int) -> list[float]:
-    """Return the better of SB3's two ways to hold six environments: in line, or a process each."""
+    """Return the rate of six environments in one process or in six, whichever is faster."""
     makers = [partial(SingleSteering, task, seed) for seed in range(SIX)]
     ways: list[Callable[[], VecEnv]] = [
         lambda: DummyVecEnv(makers),
@@ -160,7 +160,7 @@ MEASURES: dict[str, Callable[[Task, int], list[float]]] = {
 
 
 def main() -> None:
-    """Measure what was asked for; write it as one JSON object of lists."""
+    """Measure what was asked for and write it as one JSON object of lists."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("task", type=Path)
     parser.add_argument("out", type=Path)

@@ -1,6 +1,6 @@
-"""The steering task in NumPy, a batch at a time, as one would write it for Stable-Baselines3.
+"""The steering task in NumPy, in batches, in the usual form for Stable-Baselines3.
 
-It shares no code with the JAX environment; a test holds the two against each other.
+It shares no code with the JAX environment; a test compares the two.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ HEIGHT_SPREAD = (-0.20, 0.07)
 
 @dataclass
 class Outcome:
-    """What a step gives, one row a robot."""
+    """The result of a step, one row per robot."""
 
     observation: np.ndarray
     reward: np.ndarray
@@ -28,12 +28,12 @@ class Outcome:
 
 
 class SteeringBatch:
-    """Robots that walk towards goals, all stepped at once.
+    """A batch of robots that walk towards goals.
 
     Args:
         task: terrain, links and constants.
-        count: of robots.
-        seed: of starts and goals.
+        count: number of robots.
+        seed: random seed of starts and goals.
     """
 
     def __init__(self, task: Task, count: int, seed: int = 0) -> None:
@@ -61,7 +61,7 @@ class SteeringBatch:
         self.restart(np.ones(count, bool))
 
     def observe(self) -> np.ndarray:
-        """Return what every robot sees now, in physical units."""
+        """Return the current observation of every robot, in physical units."""
         return self._observation(self._heights(self.map, self.position, self.yaw))
 
     def step(self, action: np.ndarray) -> Outcome:
@@ -89,7 +89,7 @@ class SteeringBatch:
         return Outcome(self._observation(heights), reward, ~valid, truncated)
 
     def restart(self, where: np.ndarray) -> None:
-        """Give the robots in the mask fresh starts, each used once."""
+        """Give the robots in a mask fresh starts, each used once."""
         count = int(where.sum())
         while len(self._spare.get("yaw", ())) < count:
             fresh = self._draw(max(CANDIDATES, count))

@@ -13,18 +13,18 @@ ARRAYS = ("heights", "origin", "map_index", *AREAS, "share")
 
 @dataclass(frozen=True)
 class Task:
-    """Terrain, links and constants.
+    """Terrain, links and constants of the task.
 
     Attributes:
-        heights: of every map, float32 [maps, rows, columns]; far below where there is no ground.
-        origin: x, y of the centre of each map's first cell [m].
-        map_index: of each link.
-        start_area: x_min, x_max, y_min, y_max of each link's start area [m].
-        near_area: likewise of the strip of it next to what is to be crossed.
-        goal_area: likewise of its goal area.
-        arena_area: likewise of its arena.
+        heights: heights of every map, float32 [maps, rows, columns]; far below without ground.
+        origin: centre x, y of each map's first cell [m].
+        map_index: map of each link.
+        start_area: bounds x_min, x_max, y_min, y_max of each link's start area [m].
+        near_area: bounds of the part of the start area next to the obstacle, likewise.
+        goal_area: bounds of each link's goal area, likewise.
+        arena_area: bounds of each link's arena, likewise.
         share: cumulative share of the starts.
-        constants: everything else: layout, limits, weights, robot; see `write_task`.
+        constants: all other values: layout, limits, weights, robot; see `write_task`.
     """
 
     heights: np.ndarray

@@ -1,4 +1,4 @@
-"""Seconds to compile, and from process start to the first update: without and with the cache."""
+"""Seconds to compile, and from process start to the first update, without and with the cache."""
 
 import json
 import tempfile

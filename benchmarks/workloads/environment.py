@@ -1,6 +1,6 @@
-"""Steps a second of the environment alone, under random actions, restarts included.
+"""Steps per second of the environment alone, with random actions, restarts included.
 
-One jitted scan over donated state, as in training; the host waits once a run, not once a call.
+One jitted scan over donated state, as in training; the host waits once per run, not once per call.
 """
 
 from functools import partial
@@ -43,7 +43,7 @@ def _of_arenas(arenas: int, context: Context) -> dict[str, Figure]:
 
 
 def _without_restarts(context: Context) -> dict[str, Figure]:
-    """Measure the step by itself: robots that have failed walk on."""
+    """Measure the step alone: robots that have failed walk on."""
     runs = rates(context.env, context.world, ARENA_ROBOTS, context, restarts=False)
     return {WITHOUT_RESTARTS: Figure(runs, context.env_limit(context.env, ARENA_ROBOTS))}
 
@@ -51,7 +51,7 @@ def _without_restarts(context: Context) -> dict[str, Figure]:
 def rates(
     env: SteeringEnv, world: World, robots: int, context: Context, restarts: bool = True
 ) -> list[float]:
-    """Return steps a second, one value a run."""
+    """Return the steps per second, one value per run."""
     ppo = context.config.ppo
     walk = _make_walk(env, ppo.unroll, robots, ppo.candidates if restarts else 0)
     devices = all_devices(robots)
@@ -77,9 +77,9 @@ def _begin(env: SteeringEnv, world: World, robots: int):
 
 
 def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
-    """Return what the roll-out of training does, without a policy: walk `unroll` steps.
+    """Return a function that walks `unroll` steps, as the roll-out of training without a policy.
 
-    With no candidates for fresh starts nobody is restarted.
+    Without candidates for fresh starts no robot is restarted.
     """
     weights = RewardParams.of(env.config.reward)
 
@@ -88,7 +88,7 @@ def _make_walk(env: SteeringEnv, unroll: int, robots: int, candidates: int):
         episode, observation, key = state
         key, pool_key, action_key, restart_key = jax.random.split(key, 4)
         pool = pool_of(draw_starts(env, world, pool_key, candidates)) if candidates else None
-        # Two actions from each random word: drawing them is no work of the environment's.
+        # Two actions from each random word: drawing them is not the environment's work.
         shape = (unroll, robots, env.action_size)
         words = jax.random.bits(action_key, (*shape[:2], env.action_size // 2))
         halves = jax.lax.bitcast_convert_type(words, jnp.uint16).reshape(shape)

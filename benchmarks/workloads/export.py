@@ -1,4 +1,4 @@
-"""Latency of the exported policy in onnxruntime, as a robot would call it."""
+"""Latency of the exported policy in onnxruntime, called as by a robot."""
 
 from functools import partial
 
@@ -23,7 +23,7 @@ BATCHES = (1, 1024)
 
 def _measure(batch: int, context: Context) -> dict[str, Figure]:
     env, network = context.env, context.config.network
-    # Untrained: what the weights are does not change how long they take.
+    # Untrained: the values of the weights do not change the time.
     networks = make_networks(network, env.config.signature())
     params = networks.actor.init(jax.random.key(0))
     normaliser = initial_normaliser(network, networks.signature)

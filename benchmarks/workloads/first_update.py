@@ -1,4 +1,4 @@
-"""In a fresh process: compile what a training needs, make one update, tell when.
+"""Compile training in a fresh process, make one update, and print the times.
 
 python -m benchmarks.workloads.first_update CONFIG.yaml
 """
@@ -19,7 +19,7 @@ from jaxleas.xla.compilation import keep_compiled_programs  # noqa: E402
 
 
 def main() -> None:
-    """Print seconds as a line of JSON."""
+    """Print the times in seconds as a line of JSON."""
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     keep_compiled_programs()
     imported = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Seconds from the start of `train.py` to a success rate on held-out terrain, one run a seed."""
+"""Seconds from the start of `train.py` to a success rate on held-out terrain, one run per seed."""
 
 import subprocess
 import tempfile
@@ -14,7 +14,7 @@ from jaxleas.runs.metrics import read_metrics
 LEVELS = {"learn_seconds_to_95_percent": 0.95, "learn_seconds_to_99_percent": 0.99}
 BEST, SECONDS_TO_BEST = "learn_best_success", "learn_seconds_to_best"
 MOST_RUNS = 3
-POLL = 0.1  # [s]
+POLL = 0.1  # time between two looks at the metrics [s]
 
 
 def _measure(context: Context) -> dict[str, Figure]:
@@ -34,7 +34,7 @@ def _measure(context: Context) -> dict[str, Figure]:
 def learning_curve(config: Path, folder: Path, seed: int) -> list[tuple[float, float]]:
     """Train with one seed; return (seconds since process start, held-out success).
 
-    The compile cache is shared by the seeds, as a user's is by his runs: the first is cold.
+    The seeds share the compile cache, as a user's runs do: the first run is cold.
     """
     run_dir = folder / f"run_{seed}"
     words = ["train.py", str(config), "--run-dir", str(run_dir), "--seed", str(seed)]

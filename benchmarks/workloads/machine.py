@@ -1,4 +1,4 @@
-"""The roofs themselves, so that a slow machine is not taken for slow code."""
+"""The machine's roofs, so that a slow machine is not mistaken for slow code."""
 
 from benchmarks.context import Context
 from benchmarks.measurements import Figure, Metric

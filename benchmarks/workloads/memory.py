@@ -1,4 +1,4 @@
-"""The most memory that a training holds: the whole process, as the system counts it."""
+"""The peak memory of training: of the whole process, as the system counts it."""
 
 import tempfile
 from pathlib import Path

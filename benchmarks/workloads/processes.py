@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.context import ROOT
 from jaxleas.types.errors import JaxleasError
 
-# A process inherits the peak of the one that forked it, so a small one stands in between.
+# A process inherits the peak of the one that forked it, so a small process is in between.
 _WEIGH = """
 import resource, subprocess, sys
 code = subprocess.call([sys.executable, *sys.argv[2:]])
@@ -27,12 +27,12 @@ class ChildError(JaxleasError):
 
 @dataclass(frozen=True)
 class Finished:
-    """A program that ended well.
+    """A program that ended without an error.
 
     Attributes:
-        began: when it was started, as `time.time` has it [s].
-        peak: the most memory that it held [MiB].
-        output: what it wrote to standard output.
+        began: time of its start, by `time.time` [s].
+        peak: peak of its memory [MiB].
+        output: text that it wrote to standard output.
     """
 
     began: float
@@ -41,7 +41,7 @@ class Finished:
 
 
 def start(words: Sequence[str], cache: Path, log: Path) -> subprocess.Popen:
-    """Start a Python program with a compile cache of its own; its output goes to `log`."""
+    """Start a Python program with its own compile cache; its output goes to `log`."""
     with log.open("w", encoding="utf-8") as stream:
         return subprocess.Popen(
             [sys.executable, *words],
@@ -49,7 +49,7 @@ def start(words: Sequence[str], cache: Path, log: Path) -> subprocess.Popen:
             env=os.environ
             | {
                 "JAX_COMPILATION_CACHE_DIR": str(cache),
-                # Of a GPU's memory the measuring process holds most already.
+                # The measuring process already holds most of a GPU's memory.
                 "XLA_PYTHON_CLIENT_PREALLOCATE": "false",
             },
             stdout=stream,
@@ -61,7 +61,7 @@ def run(words: Sequence[str], cache: Path, log: Path) -> Finished:
     """Run a Python program to its end.
 
     Raises:
-        ChildError: it failed.
+        ChildError: the program failed.
     """
     peak = log.with_name(f"{log.name}.peak")
     began = time.time()
@@ -75,7 +75,7 @@ def run(words: Sequence[str], cache: Path, log: Path) -> Finished:
 
 
 def require_success(code: int, words: Sequence[str], output: str) -> None:
-    """Raise ChildError with a program's last words unless it ended well."""
+    """Raise ChildError with the last line of a program's output unless it succeeded."""
     if code:
         last = (output.strip().splitlines() or ["it said nothing"])[-1]
         raise ChildError(f"`python {' '.join(words)}` failed: {last}")

@@ -1,4 +1,4 @@
-"""How much longer an environment step takes where a surrogate ends episodes, too."""
+"""The cost of a surrogate that ends episodes, per environment step."""
 
 import jax
 
@@ -15,7 +15,7 @@ PLANNER = "sampling"
 
 
 def untrained_surrogate(env: SteeringEnv) -> Surrogate:
-    """Return a surrogate of the size that is fitted by default: it costs what a fitted one does."""
+    """Return a surrogate of the default size, which costs as much as a fitted one."""
     fit = FitSettings()
     identity = Identity.of(PLANNER, settings_from(PLANNER).model_dump(mode="json"), env.config)
     one = jax.numpy.float32(1.0)

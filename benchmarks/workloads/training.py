@@ -1,6 +1,6 @@
-"""Steps of training a second, end to end (fresh starts, walking, learning), and their memory.
+"""Training steps per second, end to end (fresh starts, walking, learning), and their memory.
 
-What grows is grown by itself, all else as shipped: robots, observation, arenas, networks.
+Each quantity grows alone, all else as shipped: robots, observation, arenas, networks.
 """
 
 from functools import partial
@@ -20,9 +20,9 @@ from jaxleas.training.trainer import Trainer
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
 ARENAS = (16, 256)
-WIDTHS = (64, 256, 512)  # of the first hidden layer; each further one has half of the one before
+WIDTHS = (64, 256, 512)  # of the first hidden layer; each further layer has half the width
 AS_SHIPPED, AGAINST_SIX = "ppo_as_shipped", "ppo_as_shipped_six_environments"
-MEMORY_TOLERANCE = 0.02  # the compiler's own count: it does not jitter
+MEMORY_TOLERANCE = 0.02  # the compiler's own count, which does not vary
 
 
 def _as_shipped(context: Context) -> dict[str, Figure]:
@@ -62,7 +62,7 @@ def _measure(
     rival: str | None = None,
     limited: bool = True,
 ) -> dict[str, Figure]:
-    """Return steps a second, and the memory of the compiled step [MiB]."""
+    """Return the steps per second, and the memory of the compiled step [MiB]."""
     devices = choose_devices("all", config.ppo)
     trainer = Trainer(config, make_task(config), devices)
     held = [trainer.fresh_state()]
@@ -79,20 +79,20 @@ def _measure(
         context.rival.figure(rival) if rival else None,
     )
     each = step_memory(step)
-    # The compiler counts for one device; cores have one memory.
+    # The compiler counts for one device; cores share one memory.
     sharing = len(devices) if jax.default_backend() == "cpu" else 1
     return {name: speed, memory_name(name): Figure([None if each is None else sharing * each])}
 
 
 def memory_name(name: str) -> str:
-    """Return how the memory of a training is called."""
+    """Return the name of the memory metric of a training."""
     return name.replace("ppo_", "ppo_memory_", 1)
 
 
 def step_memory(step: jax.stages.Compiled) -> float | None:
-    """Return what a compiled step holds on a device: terrain, state, batch, temporaries [MiB].
+    """Return the memory of a compiled step on a device: terrain, state, batch, temporaries [MiB].
 
-    None where the device's compiler does not count it.
+    It is None if the device's compiler does not count it.
     """
     sizes = step.memory_analysis()
     if sizes is None:

@@ -1,4 +1,4 @@
-"""What a workload is."""
+"""The definition of a workload."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ class Workload:
     """Metrics that are measured together.
 
     Attributes:
-        metrics: that it measures.
-        measure: gives a figure for each metric, by name.
+        metrics: metrics that it measures.
+        measure: function that returns a figure for each metric, by name.
     """
 
     metrics: tuple[Metric, ...]

@@ -1,4 +1,4 @@
-"""Points of contact, with normals, headings and friction: what equilibrium is judged on."""
+"""Points of contact with normals, headings and friction, for tests of equilibrium."""
 
 from dataclasses import dataclass
 
@@ -13,14 +13,14 @@ LEAST_GENERATORS = 3
 
 @dataclass(frozen=True, eq=False)
 class ContactPoints:
-    """Points at which robots touch, of one robot or of any batch of robots.
+    """Points of contact of one robot or of any batch of robots.
 
     Attributes:
         points: points of contact in the world [m].
         normals: unit contact normals, away from the surface.
         friction: friction coefficient mu of all points, or of each point [1].
         ahead: first axis of the contact that each point belongs to: the generators of the point's
-            friction cone turn with it; None to turn them with the world's y axis.
+            friction cone turn with it; None to align them with the world's y axis.
         generators: number of generators of each point's friction cone, linearised from inside.
 
     Raises:
@@ -64,7 +64,7 @@ class ContactPoints:
         return self.points.shape[:-2]
 
     def flat(self) -> "ContactPoints":
-        """Return the same contacts with one batch axis."""
+        """Return the same contacts with a single batch axis."""
         shape = (-1, *self.points.shape[-2:])
         friction = self.friction
         if np.ndim(friction):

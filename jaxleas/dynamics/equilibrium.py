@@ -1,4 +1,4 @@
-"""Static equilibrium: how far a robot is from slipping and tipping over, for many at once."""
+"""Static equilibrium: the distance of robots from slipping and tipping over, in batches."""
 
 import numpy as np
 from jaxtyping import Float
@@ -10,8 +10,8 @@ from jaxleas.dynamics.small_lp import maximise
 from jaxleas.dynamics.vectors import cross
 from jaxleas.types.errors import InputError
 
-GRAVITY = 9.81  # [m/s^2]
-_CERTIFIED = 1e-9  # how far a basis may miss primal or dual feasibility, relative to its size
+GRAVITY = 9.81  # standard gravity [m/s^2]
+_CERTIFIED = 1e-9  # tolerance of a basis's primal and dual feasibility, relative to its size
 
 
 def equilibrium_robustness(
@@ -28,12 +28,12 @@ def equilibrium_robustness(
     `robustness_of` is the same for contacts whose generators turn with them.
 
     Args:
-        points: of contact, in the world [m].
-        normals: at the points, unit, away from the ground.
+        points: points of contact in the world [m].
+        normals: unit contact normals, away from the ground.
         com: centre of mass in the world [m].
-        mass: of the robot [kg].
-        friction: mu, the same at all points [1].
-        acceleration: of the centre of mass [m/s^2]; none for static equilibrium.
+        mass: mass of the robot [kg].
+        friction: friction coefficient mu of all points [1].
+        acceleration: acceleration of the centre of mass [m/s^2]; None for static equilibrium.
 
     Raises:
         InputError: shapes disagree, or a number is not finite or out of range.
@@ -56,15 +56,16 @@ def robustness_of(
         max b0  such that  G b = m [a - g; c x (a - g)],  b_i >= b0
 
     (Del Prete et al. 2016, "Fast algorithms to test robust static equilibrium"; generators of one
-    point in the product). The dual of this has one variable for each dimension but one of the
-    wrench and is solved for the whole batch together. Every answer is certified: its basis must
-    be primal and dual feasible. What fails, or pulls at the robot from above, goes to HiGHS.
+    point in the product). The dual of this has one variable fewer than the wrench has dimensions,
+    and is solved for the whole batch together. Every answer is certified: its basis must be primal
+    and dual feasible. Problems that fail, or in which contacts pull at the robot from above, go to
+    HiGHS.
 
     Args:
         contacts: points of contact.
         com: centre of mass in the world [m].
         mass: mass of the robot [kg].
-        acceleration: acceleration of the centre of mass [m/s^2]; none for static equilibrium.
+        acceleration: acceleration of the centre of mass [m/s^2]; None for static equilibrium.
 
     Raises:
         InputError: shapes disagree, or a number is not finite or out of range.
@@ -105,7 +106,7 @@ def _solve(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return b0 [N] of each problem, and whether it is certified.
 
-    Along the direction d of the generators' sum every generator counts positively, as a rule. The
+    Along the direction d of the generators' sum every generator usually has a positive part. The
     equation along d gives b0 = (d . f - sum_j (d . g_j) s_j) / sum_j d . g_j for b = b0 + s; the
     other five remain: A s = r, s >= 0, and b0 is largest where gamma . s is least, gamma > 0.
     """
@@ -119,7 +120,7 @@ def _solve(
     share = wanted[:, 0] / leading
     A = turned[:, 1:] - total[:, 1:, None] * gamma[:, None, :]
     r = wanted[:, 1:] - total[:, 1:] * share[:, None]
-    # Scaled so that forces are about one: the tolerances of the solver are absolute.
+    # Scale forces to about one: the tolerances of the solver are absolute.
     scale = np.linalg.norm(force, axis=1, keepdims=True)
     scale = np.where(scale > 0.0, scale, 1.0)
     factor = gamma.shape[1]
@@ -134,7 +135,7 @@ def _certify(
     gamma: Float[np.ndarray, "N G"],
     active: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve once more on each final basis; check both sides of duality."""
+    """Solve again on each final basis, and check primal and dual feasibility."""
     whole = np.all(active >= 0, axis=1)
     basis = np.where(active >= 0, active, 0)
     columns = np.take_along_axis(A, basis[:, None, :], axis=2)  # [N, 5, 5]

@@ -1,4 +1,4 @@
-"""Is a robustness surely there, or surely not? Bounds without a linear program."""
+"""Bounds on the robustness of equilibrium without a linear program."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -9,8 +9,8 @@ from jaxleas.dynamics.friction import margin_of_generator
 from jaxleas.dynamics.vectors import cross
 
 _ROUNDS = 3
-_EXCESS = 2.0  # [N]; aim past the bound, so that projecting back does not fall short of it
-_SIDED = 1e-9  # a generator that turns back by less counts as turning forwards
+_EXCESS = 2.0  # [N]; aim above the bound, so that projecting back does not fall below it
+_SIDED = 1e-9  # a generator that turns backwards by less counts as turning forwards
 
 
 def decide_robustness(
@@ -20,21 +20,21 @@ def decide_robustness(
     mass: float,
     least: float,
 ) -> tuple[Bool[np.ndarray, " N"], Bool[np.ndarray, " N"]]:
-    """Tell where the robustness of static equilibrium is certainly `least` or more, or less.
+    """Return where the robustness of static equilibrium is certainly at least a bound, or below it.
 
     From below: any b with G b = m [-g; 0] proves a robustness of min(b) |(sum_j g_j) x g_1|; the
     shortest such b is tried, then some nearer to the bound by alternating projections. From above:
     an axis through two contact points about which no generator turns backwards; the robot tips
-    over it as gravity turns it backwards. Where neither holds, ask `robustness_of`.
+    over it if gravity turns it backwards. Where neither answers, use `robustness_of`.
 
     Args:
         contacts: points of contact, with one batch axis.
-        com: centre of mass [m].
-        mass: of the robot [kg].
-        least: the bound [N].
+        com: centre of mass in the world [m].
+        mass: mass of the robot [kg].
+        least: bound on the robustness [N].
 
     Returns:
-        Where it is surely there, and where it is surely not.
+        Where the robustness is certainly at least the bound, and where it is certainly below it.
     """
     wrenches = contact_wrenches(contacts, com)
     bound = np.broadcast_to(least / margin_of_generator(contacts), len(com))
@@ -52,7 +52,7 @@ def _balances(wrenches: np.ndarray, weight: float, bound: np.ndarray) -> Bool[np
     wanted = np.array([0.0, 0.0, weight, 0.0, 0.0, 0.0])
     transposed = wrenches.transpose(0, 2, 1)
     gram = wrenches @ transposed
-    # A point or an edge does not span all six dimensions: nothing is proved there.
+    # A point or an edge does not span all six dimensions: it proves nothing.
     regular = np.linalg.det(gram) > 1e-9
     gram = np.where(regular[:, None, None], gram, np.eye(6))
     back = transposed @ np.linalg.inv(gram)
@@ -71,7 +71,7 @@ def _balances(wrenches: np.ndarray, weight: float, bound: np.ndarray) -> Bool[np
 def _tips_over(
     wrenches: np.ndarray, arms: np.ndarray, weight: float, bound: np.ndarray
 ) -> Bool[np.ndarray, " N"]:
-    """Tell where a tipping axis bounds b0 from above by less than `bound`.
+    """Return where a tipping axis bounds b0 from above by less than `bound`.
 
     For the axis u through p, relative to the centre of mass, a force f and torque t turn by
     y . [f; t] with y = [p x u; u]. If y . g >= 0 for all generators, then

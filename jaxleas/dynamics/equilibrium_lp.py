@@ -1,4 +1,4 @@
-"""The robustness of one equilibrium by its definition, with a general solver (HiGHS)."""
+"""The robustness of one equilibrium by definition, with a general solver (HiGHS)."""
 
 import numpy as np
 from jaxtyping import Float
@@ -12,16 +12,16 @@ def robustness_by_linear_program(
 ) -> float:
     """Return max b0 with G b = [f; 0], b_i >= b0, torques about the centre of mass [N].
 
-    Where no b balances the force however large (too few points to span all wrenches), there is no
-    equilibrium at any margin and the answer is minus infinity; where friction closes the grip,
-    it is plus infinity.
+    Where no b balances the force, however large (too few points to span all wrenches), there is
+    no equilibrium at any margin and the answer is minus infinity; where squeezing harder always
+    helps, it is plus infinity.
 
     Args:
-        wrenches: one column for each generator.
-        force: m (a - g) [N].
+        wrenches: wrenches of the generators, one column each.
+        force: force m (a - g) to balance [N].
 
     Raises:
-        JaxleasError: HiGHS gave up.
+        JaxleasError: HiGHS found no answer.
     """
     size = float(np.linalg.norm(force)) or 1.0
     count = wrenches.shape[1]

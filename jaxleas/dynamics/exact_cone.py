@@ -1,9 +1,9 @@
 """The robustness of one equilibrium with the exact, second-order friction cone.
 
 A cone of K generators lies inside the exact one, so that a linear program over generators bounds
-the exact robustness from below. Its dual says which force of the exact cone would help most, in
-closed form; that force becomes one more generator, until none helps any more (Kelley 1960, columns
-instead of cuts). Shares no code with `equilibrium.py`.
+the exact robustness from below. Its dual gives the force of the exact cone that would help most, in
+closed form; that force becomes a new generator, until none helps any more (Kelley 1960, columns
+instead of cuts). The file shares no code with `equilibrium.py`.
 """
 
 import math
@@ -41,7 +41,7 @@ def exact_robustness(
         contacts: points of contact of one robot; `generators` does not matter.
         com: centre of mass in the world [m].
         mass: mass of the robot [kg].
-        enough: a robustness that suffices [N]: a lower bound that reaches it is returned at once.
+        enough: sufficient robustness [N]: a lower bound that reaches it is returned at once.
 
     Returns:
         The robustness, or a lower bound of at least `enough`; minus infinity where no forces
@@ -49,7 +49,7 @@ def exact_robustness(
 
     Raises:
         InputError: the contacts are a batch, or a number is not finite or out of range.
-        JaxleasError: HiGHS gave up.
+        JaxleasError: HiGHS found no answer.
     """
     _require(contacts, com, mass)
     frames, arms, friction = _frames(contacts), contacts.points - com, _friction(contacts)
@@ -120,7 +120,7 @@ def _wrenches(
 
 
 def _frames(contacts: ContactPoints) -> Float[np.ndarray, "P 3 3"]:
-    """Return a frame at each point: two tangents, the normal."""
+    """Return a frame at each point: two tangents and the normal."""
     normals = contacts.normals
     anyhow = np.eye(3)[np.abs(normals).argmin(axis=1)]
     across = np.cross(normals, anyhow if contacts.ahead is None else contacts.ahead)

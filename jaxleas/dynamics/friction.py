@@ -1,4 +1,4 @@
-"""Friction cones, linearised from inside by a few generators a contact point."""
+"""Friction cones, linearised from inside by a few generators per contact point."""
 
 import numpy as np
 from jaxtyping import Float
@@ -25,7 +25,7 @@ def friction_generators(
         normals: unit contact normals, pointing away from the surface.
         friction: friction coefficient mu [1].
         ahead: first axis of each point's contact, with which the generators turn.
-        count: number K of generators of a point.
+        count: number K of generators per point.
     """
     first = _tangents(normals, ahead)
     second = cross(normals, first)
@@ -41,8 +41,8 @@ def friction_generators(
 def margin_of_generator(contacts: ContactPoints) -> float | Float[np.ndarray, "*batch"]:
     """Return the force [N] by which the cone's faces recede for each newton on its generators.
 
-    |(sum_j g_j) x g_1| = K mu / (1 + mu^2) over the K generators of one contact point; the least of
-    points with different friction.
+    |(sum_j g_j) x g_1| = K mu / (1 + mu^2) over the K generators of one contact point; the smallest
+    value if friction differs between points.
     """
     mu = np.asarray(contacts.friction, dtype=np.float64)
     margin = contacts.generators * mu / (1.0 + mu * mu)
@@ -55,7 +55,7 @@ def _tangents(normals: np.ndarray, ahead: np.ndarray | None) -> np.ndarray:
         length = np.linalg.norm(across, axis=-1)
         if (length >= 1e-4).all():
             return across / length[..., None]
-        # Headings along the normal say nothing: there the world decides.
+        # Headings along the normal have no tangent part: there the world's axes are used.
         safe = np.where(length[..., None] >= 1e-4, across, _tangents(normals, None))
         return safe / np.linalg.norm(safe, axis=-1, keepdims=True)
     x, y, z = normals[..., 0], normals[..., 1], normals[..., 2]

@@ -1,7 +1,7 @@
 """Many small linear programs at once: the simplex method on condensed tableaux, in NumPy.
 
-A general solver spends a millisecond on calling, preparing and answering; the problems here have
-three to six variables and some tens of inequalities, and come in hundreds.
+A general solver spends a millisecond on overhead; the problems here have three to six variables
+and some tens of inequalities, and come in hundreds.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 _PIVOT = 1e-10  # smaller entries of a tableau count as zero
-_SPREAD = 1e-9  # relative; shakes ties apart, which symmetric feet produce by the dozen
+_SPREAD = 1e-9  # relative; breaks ties, which symmetric feet produce by the dozen
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,9 @@ class SmallLpSolution:
     """Answers to N linear programs.
 
     Attributes:
-        variables: y, where each maximum is attained.
-        active: the V inequalities whose plane each y lies on; -1 where there are fewer.
-        solved: whether the search ended at a maximum (else: unbounded, or given up).
+        variables: point y of each maximum.
+        active: indices of the V inequalities whose plane each y lies on; -1 where there are fewer.
+        solved: whether the search ended at a maximum; otherwise it was unbounded or out of pivots.
     """
 
     variables: Float[np.ndarray, "N V"]
@@ -38,13 +38,13 @@ def maximise(
 
     Each tableau holds the slacks as affine functions of the nonbasic variables; a free variable
     that has entered never leaves. Bounds are spread apart by 1e-9 of their size against cycling:
-    whoever needs more digits solves again for the planes in `active`.
+    for more digits, solve again for the planes in `active`.
 
     Args:
-        objective: what to maximise.
-        rows: left-hand sides.
-        bounds: right-hand sides, none negative.
-        most_pivots: after which a problem is given up.
+        objective: objectives to maximise.
+        rows: left-hand sides of the inequalities.
+        bounds: right-hand sides of the inequalities, none negative.
+        most_pivots: maximum number of pivots per problem.
     """
     count, height, width = rows.shape
     shaken = bounds + _SPREAD * np.maximum(bounds.max(axis=1, initial=0.0), 1e-3)[:, None] * (
@@ -56,7 +56,7 @@ def maximise(
     tableau[:, :height, width] = shaken
     tableau[:, height, :width] = objective
     tableau[:, height, width] = 0.0
-    # Names: 0 .. height - 1 are slacks, height + v is variable v.
+    # Names of variables: 0 .. height - 1 are slacks, height + v is variable v.
     search = _Search(
         tableau,
         basic=np.broadcast_to(np.arange(height), (count, height)).copy(),
@@ -75,7 +75,7 @@ def maximise(
 
 @dataclass
 class _Search:
-    """Tableaux that are still being worked on; the names tell whose they are."""
+    """The tableaux of unfinished problems, with the names of their variables."""
 
     tableau: np.ndarray
     basic: np.ndarray
@@ -83,10 +83,10 @@ class _Search:
     name: np.ndarray
 
     def pivot(self, answer: SmallLpSolution) -> "_Search":
-        """Exchange one variable in each problem; write down and leave those that are done."""
+        """Exchange one variable in each problem; write the answers of finished problems."""
         height, width = self.basic.shape[1], self.nonbasic.shape[1]
         gain = self.tableau[:, height, :width]
-        # A nonbasic slack may only grow; a free variable moves either way, and goes first.
+        # A nonbasic slack may only grow; a free variable moves either way, and enters first.
         attraction = np.where(self.nonbasic >= height, np.abs(gain) * 1e6, gain)
         column = attraction.argmax(axis=1)
         each = np.arange(len(column))
@@ -102,7 +102,7 @@ class _Search:
         height, width, each = basic.shape[1], nonbasic.shape[1], np.arange(len(column))
         entering = tableau[each, :, column]  # [problems, height + 1]
         sign = np.where(entering[:, height:] < 0.0, 1.0, -1.0)
-        # Only slacks limit the way: a basic free variable may take any value.
+        # Only slacks limit the step: a basic free variable may take any value.
         fall = np.where(basic < height, entering[:, :height] * sign, 0.0)
         constants = tableau[:, :height, width]
         step = np.where(fall > _PIVOT, constants / np.maximum(fall, _PIVOT), np.inf)
@@ -119,7 +119,7 @@ class _Search:
         pivot_row *= -1.0
         pivot_row[each, column] = 1.0 / left_share
         tableau[each, row] = pivot_row
-        # The column of what has left: shares of the pivot.
+        # The column of the leaving variable, divided by the pivot.
         share /= left_share[:, None]
         share[each, row] = pivot_row[each, column]
         tableau[each, :, column] = share

@@ -1,4 +1,4 @@
-"""Vector products of small arrays, without the bookkeeping of `np.cross`."""
+"""Vector products of small arrays, without the overhead of `np.cross`."""
 
 import numpy as np
 from jaxtyping import Float

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from jaxleas.training.policy import Policy
     from jaxleas.types import Query
 
-MAX_CONFIGURATIONS = 20_000_000  # of all paths together: about a gigabyte while they are walked
+MAX_CONFIGURATIONS = 20_000_000  # in all paths together: about a gigabyte during the roll-out
 
 
 def rollout(
@@ -46,16 +46,16 @@ def rollout(
         terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
         queries: .json list of {position, yaw, velocity, goal}.
         out: the guide paths, .npz.
-        steps: most configurations after the first of a path.
+        steps: maximum number of configurations after the first one of a path.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
         steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
             MODULE:CLASS of your own, under its conditions.
         picture: draw the paths from above (.png, .svg, .pdf).
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black means no ground in a .png.
         allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
             condition; by default R* and C.
     """
@@ -101,7 +101,7 @@ def rollout(
 def steering_named(
     steering: str, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
 ) -> "SteeringMethod":
-    """Return the steering method of that name, as fast as its task says; LEAS needs a policy."""
+    """Return the steering method of a name, tuned to the task's speed; LEAS needs a policy."""
     from jaxleas.guide.leas import leas
     from jaxleas.guide.registry import LEAS, baseline_named
 

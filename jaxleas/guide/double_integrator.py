@@ -18,14 +18,14 @@ _TINY = 1e-30  # keeps 0 / 0 out of branches that are not taken
 class Connection:
     """A motion between two states: every axis arrives at `duration`.
 
-    Each axis accelerates, keeps its speed, and accelerates the other way as much.
+    Each axis accelerates, keeps its speed, and then accelerates as much in the opposite direction.
 
     Attributes:
-        duration: of the motion [s].
-        displacement: to be covered [m].
+        duration: duration of the motion [s].
+        displacement: displacement to be covered [m].
         start_velocity: v_1 [m/s].
         end_velocity: v_2 [m/s].
-        acceleration: of the first stretch, minus that of the last [m/s^2].
+        acceleration: acceleration of the first stretch; the last stretch has its negative [m/s^2].
         first: duration of the first stretch [s].
         last: duration of the last stretch [s].
     """
@@ -41,16 +41,16 @@ class Connection:
     def at(
         self, time: Float[Array, "*batch"]
     ) -> tuple[Float[Array, "*batch axes"], Float[Array, "*batch axes"]]:
-        """Return displacement so far [m] and velocity [m/s]; at rest on the end afterwards.
+        """Return displacement so far [m] and velocity [m/s]; after the end, those at the end.
 
         Args:
-            time: since the start [s].
+            time: time since the start [s].
         """
         time, duration = time[..., None], self.duration[..., None]
         to_end = jnp.maximum(duration - time, 0.0)
         begun = jnp.minimum(time, self.first)
         ending = jnp.minimum(to_end, self.last)
-        # What has passed is reckoned from the start, the last stretch back from the end: rounding
+        # The motion is computed from the start, the last stretch back from the end: rounding
         # then moves the middle and leaves both ends exact.
         velocity = self.start_velocity + self.acceleration * begun
         covered = self.start_velocity * begun + 0.5 * self.acceleration * begun * begun
@@ -72,7 +72,7 @@ def connect(
     max_velocity: Float[Array, "*batch axes"],
     max_acceleration: Float[Array, "*batch axes"],
 ) -> Connection:
-    """Return the motion of least duration that all axes can make together.
+    """Return the motion of the least duration that all axes can make together.
 
     The duration is the least that is possible for every axis: that of the slowest, unless it
     falls into another's gap (`axis_times`). Each axis then moves with the least acceleration that
@@ -102,7 +102,7 @@ def axis_times(
     max_velocity: Float[Array, "*batch"],
     max_acceleration: Float[Array, "*batch"],
 ) -> tuple[Float[Array, "*batch"], Float[Array, "*batch"], Float[Array, "*batch"]]:
-    """Return which durations are possible for one axis: all from `least` on, but for one gap.
+    """Return which durations are possible for one axis: all from `least` on, except for one gap.
 
     Seen so that d is at least the d_0 of changing from v_1 to v_2 at once, the fastest motion peaks
     at u = sqrt(A d + (v_1^2 + v_2^2) / 2), or cruises at V:
@@ -110,11 +110,11 @@ def axis_times(
         least = (2 u - v_1 - v_2) / A,   or   (2 V - v_1 - v_2) / A + (d - d_V) / V,
 
     d_V = (2 V^2 - v_1^2 - v_2^2) / 2 A. An axis that moves forward at both ends cannot take just
-    any longer: once it can no longer dawdle it must go back and come again. With
+    any longer time: once it cannot be slower it must go back and come again. With
     w = sqrt((v_1^2 + v_2^2) / 2 - A d) the gap lies between (v_1 + v_2 -+ 2 w) / A.
 
     Returns:
-        The least duration, the beginning and the end of the gap [s] (both 0 where there is none).
+        The least duration, the beginning and the end of the gap [s] (both 0 without a gap).
     """
     ramp = jnp.abs(end_velocity - start_velocity) / max_acceleration
     excess = displacement - 0.5 * (start_velocity + end_velocity) * ramp
@@ -123,7 +123,8 @@ def axis_times(
     total, square = begin + end, 0.5 * (begin * begin + end * end)
 
     peak = jnp.sqrt(jnp.maximum(max_acceleration * forward + square, 0.0))
-    # Rounding must not put the peak below the faster end, nor turn "just so" into "and back again".
+    # Rounding must not put the peak below the faster end, nor turn a motion that just suffices into
+    # one that goes back and comes again.
     peak = jnp.maximum(peak, jnp.maximum(begin, end))
     cruise_from = (max_velocity * max_velocity - square) / max_acceleration
     cruise = jnp.maximum(forward - cruise_from, 0.0) / max_velocity
@@ -145,7 +146,7 @@ def _stretched(
     end_velocity: Float[Array, "*batch axes"],
     max_velocity: Float[Array, "*batch axes"],
 ) -> Connection:
-    """Return each axis's motion of least acceleration a in a duration T that is possible.
+    """Return each axis's motion of least acceleration a in a possible duration T.
 
     With b = |2 d - (v_1 + v_2) T|: a = (b + sqrt(b^2 + T^2 (v_2 - v_1)^2)) / T^2; where its peak
     (v_1 + v_2 + a T) / 2 exceeds V, a = ((V - v_1)^2 + (V - v_2)^2) / (2 (V T - d)).

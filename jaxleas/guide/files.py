@@ -14,10 +14,10 @@ from jaxleas.types import GuidePath, InputError, Query
 
 Reason = Literal["reached", "invalid", "stopped"]
 
-VERSION = 1  # of guide path files
+VERSION = 1  # version of guide path files
 MAX_QUERIES = 100_000
 MAX_ABOVE_GROUND = 2.0  # a root higher than this [m] is given in other units or in another frame
-MAX_COORDINATE = 1e4  # likewise [m]; float32 still tells millimetres apart there
+MAX_COORDINATE = 1e4  # likewise [m]; float32 still distinguishes millimetres there
 MAX_SPEED = 10.0  # likewise [m/s]
 
 _LENGTHS = {"position": 3, "yaw": 0, "velocity": 3, "goal": 2}  # 0: a plain number
@@ -34,8 +34,8 @@ class GuidePathFile:
     """Guide paths and how each ended.
 
     Attributes:
-        paths: one for each query.
-        reasons: why each path ended; empty when the file does not say.
+        paths: one guide path for each query.
+        reasons: reason why each path ended; empty when the file does not say.
     """
 
     paths: tuple[GuidePath, ...]
@@ -104,9 +104,9 @@ def require_on_terrain(path: str | Path, queries: Sequence[Query], terrain: Heig
     one invalid configuration. A goal may lie anywhere.
 
     Args:
-        path: of the queries, for messages.
-        queries: to be walked.
-        terrain: to walk on.
+        path: file of the queries, for messages.
+        queries: queries that the robot will walk.
+        terrain: height map that the queries refer to.
 
     Raises:
         InputError: says which query, and where the map or the ground is.
@@ -142,10 +142,10 @@ def write_guide_paths(
     """Write guide paths end to end as .npz, whole or not at all.
 
     Args:
-        path: the file.
-        guide_paths: one for each query.
-        reasons: why each ended.
-        waypoints: that a single path was led over, the goal last, x and y [m]; not read back.
+        path: file to write.
+        guide_paths: one guide path for each query.
+        reasons: reason why each path ended.
+        waypoints: waypoints x and y of a single path, the goal last [m]; not read back.
     """
     lengths = [len(each) for each in guide_paths]
     write_npz(

@@ -17,8 +17,8 @@ class Leas:
     """Observe, ask the policy, integrate (T eq. 3.1-3.3).
 
     Attributes:
-        policy: whose arrays may change without a new compilation.
-        env: that observes.
+        policy: trained policy; its arrays may change without a new compilation.
+        env: environment that computes the observation.
     """
 
     policy: Policy
@@ -30,7 +30,7 @@ class Leas:
         motion: RootMotion,
         goal: Float[Array, "*batch 3"],
     ) -> RootMotion:
-        """Return the root motion one time step later; the goal's height is not looked at."""
+        """Return the root motion one time step later; the goal's height is ignored."""
         observation = self.env.observe(heights_in_root, motion, goal[..., :2])
         return integrate(motion, self.policy(observation), self.env.config.limits)
 
@@ -39,11 +39,11 @@ def leas(env: SteeringEnv, policy: Policy | OnnxPolicy) -> SteeringMethod:
     """Return a policy as a steering method.
 
     Args:
-        env: that observes for it.
-        policy: trained, from a run folder, a `policy.npz` or an ONNX file.
+        env: environment that computes the policy's observation.
+        policy: trained policy from a run folder, a `policy.npz` or an ONNX file.
 
     Raises:
-        InputError: the environment observes or moves otherwise than the policy was trained for.
+        InputError: the environment's observation or motion differs from the policy's.
     """
     for field in ("observation", "height_low", "height_high", "limits"):
         here, there = getattr(env.config, field), getattr(policy.config, field)

@@ -1,4 +1,4 @@
-"""Find the steering policy a person means: a run folder, a policy.npz, or an ONNX file."""
+"""Find the steering policy at a path: a run folder, a policy.npz, or an ONNX file."""
 
 import logging
 from collections.abc import Collection
@@ -16,18 +16,18 @@ _LOG = logging.getLogger("jaxleas")
 
 
 def load_policy(path: str | Path, allow: Collection[str] = ()) -> Policy | OnnxPolicy:
-    """Return the policy at `path`; its `config` says what environment to walk it in.
+    """Return the policy at `path`; its `config` describes the environment to use it in.
 
-    That is the one it was trained in, with one exception: conditions that are code, or a
-    surrogate's file, are followed only where a person allows it. A policy file may be a stranger's.
-    Without them the policy walks under R* and C, and a warning says so.
+    That is the environment it was trained in, with one exception: conditions that are code, or a
+    surrogate's file, are loaded only if the user allows it, because a policy file may come from a
+    stranger. Without them the policy walks under R* and C, and a warning says so.
 
     Args:
-        path: a run folder (its best policy, `RUN/policy.npz`), a `policy.npz`, or an `.onnx`.
-        allow: each MODULE:CLASS of its conditions that a person has named.
+        path: run folder (its best policy, `RUN/policy.npz`), `policy.npz`, or `.onnx` file.
+        allow: each MODULE:CLASS among the policy's conditions that the user has allowed.
 
     Raises:
-        InputError: there is none, or it cannot be used.
+        InputError: there is no policy at the path, or it cannot be used.
     """
     policy = _read(Path(path))
     conditions = policy.config.conditions

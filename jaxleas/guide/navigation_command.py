@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from jaxleas.guide.steering_method import SteeringMethod
     from jaxleas.terrain.scene import Scene
 
-FARTHEST = 1e6  # of a start or a goal [m]
+FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
 def navigate(
@@ -38,28 +38,30 @@ def navigate(
     z_max: float | None = None,
     zero_is_void: bool = False,
 ) -> None:
-    """Find a guide path between two places of any terrain, over waypoints where it needs them.
+    """Find a guide path between two places on any terrain, through waypoints where needed.
 
     Args:
-        from_: x,y or x,y,yaw of the start [m, rad]; without yaw the robot faces the goal if it can.
-        to: x,y of the goal [m].
+        from_: start as x,y or x,y,yaw [m, rad]; without yaw the robot faces the goal if it can.
+        to: goal as x,y [m].
         terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
         steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
             MODULE:CLASS of your own.
-        planner: rrt or prm look for waypoints if the goal alone will not do; none = the goal alone.
-        policy: a run folder, a policy.npz or an .onnx; needed for leas, whose task the others
-            share if it is given.
-        limit: after which the best partial path is written [s].
-        connections: that the search may ask for; by default as many as the time allows.
-        seed: of the search.
+        planner: rrt or prm search for waypoints if the direct walk to the goal fails; none = the
+            direct walk only.
+        policy: a run folder, a policy.npz or an .onnx; needed for leas; if given, kino and lin use
+            its task, too.
+        limit: time after which the best partial path is written [s].
+        connections: maximum number of connections that the search may try; by default as many as
+            the time allows.
+        seed: random seed of the search.
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black means no ground in a .png.
 
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
@@ -119,17 +121,18 @@ def make_navigator(
 ) -> "Navigator":
     """Return a navigator tuned for a steering method.
 
-    LEAS gets near a waypoint and around things on the way: long edges, waypoints reached within
-    the goal's radius. The baselines get exactly there, and only where the straight way is free:
-    short edges, followed to the centimetre, because a corner cut is a way that was never tried.
+    LEAS passes near a waypoint and avoids obstacles on the way: its edges are long, and waypoints
+    count as reached within the goal's radius. The baselines reach a waypoint exactly, and only
+    where the straight way is free: their edges are short and followed to the centimetre, because
+    the way that a cut corner takes has not been tried.
 
     Args:
-        places: of the terrain.
-        method: that walks.
-        steering: what kind it is.
+        places: places of the terrain where the robot can stand.
+        method: steering method.
+        steering: name of the steering method.
         planner: rrt, prm or none.
-        scene: the terrain's polygons, whose exact conditions judge every whole path.
-        reach: length of an edge of a tree at most [m], in place of the tuned one.
+        scene: polygons of the terrain; the exact conditions on them judge every whole path.
+        reach: maximum length of an edge of a tree [m], instead of the tuned length.
     """
     from jaxleas.guide.roadmaps.connections import Connector
     from jaxleas.guide.roadmaps.exact import refusals
@@ -138,7 +141,7 @@ def make_navigator(
     config, robot = places.env.config, places.env.robot
     usual, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
     reach = usual if reach is None else reach
-    # Twice the time of the straight way, and time to turn around.
+    # A quarter more than the time of the straight way, and time to turn around.
     straight = reach / (config.desired_speed * config.limits.time_step)
     turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
     steps = math.ceil(1.25 * straight + turn)
@@ -150,11 +153,12 @@ def make_navigator(
 def start_motion(
     places: "Places", start: tuple[float, float], goal: tuple[float, float], yaw: float | None
 ) -> RootMotion:
-    """Return a robot at rest at the start: at the yaw asked for, else as nearly facing the goal
-    as is valid.
+    """Return the root motion of a robot at rest at the start.
+
+    Without a yaw it takes the valid heading nearest to the direction of the goal.
 
     Raises:
-        InputError: it cannot stand there.
+        InputError: the robot cannot stand there.
     """
     from jaxleas.guide.places import HEADINGS
 

@@ -1,4 +1,4 @@
-"""What a graph from a stranger may hold: arithmetic on weights that are inside the file."""
+"""What an untrusted graph may contain: arithmetic on weights that are inside the file."""
 
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ OPERATORS = frozenset(
         *("Unsqueeze", "Where"),
     )
 )
-"""None loops, none makes an array larger than what goes in, none reads a file."""
+"""No operator loops, makes an array larger than its inputs, or reads a file."""
 MAX_NODES = 10_000
 MAX_ELEMENTS = 2**26
 
@@ -27,11 +27,11 @@ def require_plain_graph(model: "onnx.ModelProto", path: object) -> None:
     """Refuse a model that may read other files, loop, or take memory beyond its own size.
 
     Args:
-        model: as it was parsed, not yet checked by onnx.
-        path: of the file, for messages.
+        model: model as parsed, not yet checked by onnx.
+        path: path of the file, for messages.
 
     Raises:
-        InputError: says what it holds that no policy needs.
+        InputError: the model contains something that no policy needs; the message says what.
     """
     graph = model.graph
     if model.functions or model.training_info or graph.sparse_initializer:

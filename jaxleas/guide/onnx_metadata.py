@@ -16,14 +16,15 @@ INPUT, OUTPUT = "observation", "command"
 
 
 def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
-    """Return the task that a file's metadata describes, checked against this version's layouts.
+    """Return the task that the metadata describes, checked against this version's layouts.
 
     Args:
-        path: of the file, for messages.
-        metadata: of the file.
+        path: path of the file, for messages.
+        metadata: metadata of the file.
 
     Raises:
-        InputError: the file is no policy of ours, of another format, or of another layout.
+        InputError: the file is not a policy that `jaxleas export` wrote, or its format or layout is
+            another one.
     """
     if not {"format", "observation", "steering_config"} <= metadata.keys():
         raise InputError(

@@ -19,16 +19,16 @@ from jaxleas.guide.onnx_metadata import INPUT, OUTPUT, read_config
 from jaxleas.types import InputError, RootMotion
 
 MAX_BYTES = 2**28  # a policy of a quarter of a gigabyte is a mistake
-OPSETS = range(13, 24)  # of the operators a policy consists of, as onnxruntime knows them
+OPSETS = range(13, 24)  # versions of the operator set that onnxruntime can run
 
 
 @dataclass(frozen=True)
 class OnnxPolicy:
-    """Observation in physical units to command in physical units, as `Policy` has it.
+    """A map from observation to command, both in physical units, like `Policy`.
 
     Attributes:
-        config: of the environment it was trained in, from the file's metadata.
-        metadata: of the file.
+        config: configuration of the environment it was trained in, from the file's metadata.
+        metadata: metadata of the file.
     """
 
     config: SteeringConfig
@@ -39,7 +39,7 @@ class OnnxPolicy:
         """Return acceleration in the root frame [m/s^2] and turn rate [rad/s].
 
         Raises:
-            InputError: the graph fails, or answers something else than a command a row.
+            InputError: the graph fails, or does not return one command per row.
         """
         observation = np.asarray(observation, np.float32)
         flat = observation.reshape(-1, observation.shape[-1])
@@ -56,13 +56,13 @@ def read_onnx_policy(path: str | Path) -> OnnxPolicy:
     """Read a policy from an ONNX file that `jaxleas export` wrote.
 
     Raises:
-        InputError: the file is missing, damaged, no policy, or of another observation layout.
+        InputError: the file is missing, damaged, not a policy, or has another observation layout.
     """
     return onnx_policy_from_bytes(read_bytes(path, MAX_BYTES), path)
 
 
 def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
-    """Return the policy in an ONNX file's content; `path` is for messages.
+    """Return the policy in the content of an ONNX file; `path` is for messages.
 
     Raises:
         InputError: as `read_onnx_policy`.
@@ -83,7 +83,7 @@ def onnx_policy_from_bytes(content: bytes, path: object) -> OnnxPolicy:
 
 
 def _read_metadata(content: bytes, path: object) -> dict[str, str]:
-    """Check the graph; return what the file says about itself."""
+    """Check the graph and return the file's metadata."""
     import onnx
     from google.protobuf.message import DecodeError
 
@@ -109,7 +109,7 @@ def _read_metadata(content: bytes, path: object) -> dict[str, str]:
 
 
 def _reason(error: Exception) -> str:
-    """Return the first line of what somebody else's library says, for our own sentence."""
+    """Return the first line of another library's message, for our own sentence."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
     return lines[0].encode(errors="replace").decode()[:200]
 
@@ -119,7 +119,7 @@ def _session(content: bytes, path: object) -> Any:
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 4  # its complaints come as exceptions; nothing on the terminal
+    options.log_severity_level = 4  # errors come as exceptions; nothing is printed
     try:
         return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
     except _refusals() as error:
@@ -127,7 +127,7 @@ def _session(content: bytes, path: object) -> Any:
 
 
 def _refusals() -> tuple[type[Exception], ...]:
-    """Return what onnxruntime raises over a model that it cannot load or run."""
+    """Return the exceptions that onnxruntime raises for a model that it cannot load or run."""
     from onnxruntime.capi import onnxruntime_pybind11_state  # type: ignore[attr-defined]
 
     refusals: Any = onnxruntime_pybind11_state
@@ -146,7 +146,7 @@ def _refusals() -> tuple[type[Exception], ...]:
 
 
 class OnnxLeas:
-    """LEAS with the policy of an ONNX file: a steering method that is driven from the host."""
+    """LEAS with the policy of an ONNX file: a steering method that runs on the host."""
 
     runs_on_host: Literal[True] = True
 
@@ -162,6 +162,6 @@ class OnnxLeas:
         motion: RootMotion,
         goal: Float[Array, "*batch 3"],
     ) -> RootMotion:
-        """Return the root motion one time step later; the goal's height is not looked at."""
+        """Return the root motion one time step later; the goal's height is ignored."""
         observation = self._observe(heights_in_root, motion, goal[..., :2])
         return self._integrate(motion, self.policy(np.asarray(observation)))

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 STARTS: dict[Reason, str] = {"reached": "gold", "invalid": "black", "stopped": "white"}
 PATH, GOAL = "tab:blue", "red"
-ARROWS_EVERY = 15  # configurations
+ARROWS_EVERY = 15  # configurations between two arrows
 ARROW_LENGTH = 0.2  # [m]
-MOST_PATHS = 200  # more would hide one another
+MOST_PATHS = 200  # more paths would hide each other
 
 
 def require_picture(path: str | Path) -> None:
-    """Refuse a picture's name whose type cannot be drawn."""
+    """Refuse the name of a picture whose type cannot be drawn."""
     if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
 
@@ -37,11 +37,11 @@ def draw_navigation(
     """Draw one path (blue), its headings, its numbered waypoints and the goal over the terrain.
 
     Args:
-        path: of the picture (.png, .svg, .pdf).
-        terrain: that was walked on.
-        guide_path: that was found.
-        waypoints: it was led over, in order [m].
-        goal: it was to reach, x and y [m].
+        path: file of the picture (.png, .svg, .pdf).
+        terrain: height map under the path.
+        guide_path: guide path that was found.
+        waypoints: waypoints of the path, in order [m].
+        goal: goal of the path, x and y [m].
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
@@ -60,7 +60,7 @@ def draw_navigation(
 def plot_navigation(
     ax: "Axes", guide_path: GuidePath, waypoints: np.ndarray, goal: tuple[float, float]
 ) -> None:
-    """Draw a path, its headings, its numbered waypoints and the goal on these axes."""
+    """Draw a path, its headings, its numbered waypoints and the goal on axes."""
     ax.plot(*guide_path.position[:, :2].T, color=PATH, linewidth=1.6, zorder=3)
     _draw_headings(ax, guide_path)
     ax.scatter(*guide_path.position[0, :2], s=40, c="gold", edgecolors="black", zorder=5)
@@ -94,14 +94,14 @@ def draw_guide_paths(
     reasons: Sequence[Reason],
     queries: Sequence[Query],
 ) -> None:
-    """Draw paths (blue), headings (arrows), goals (red) and starts by outcome over the terrain.
+    """Draw paths (blue), headings (arrows), goals (red) and starts by reason over the terrain.
 
     Args:
-        path: of the picture (.png, .svg, .pdf).
-        terrain: that was walked on.
-        guide_paths: one for each query; the first 200 are drawn.
-        reasons: why each ended.
-        queries: that were asked.
+        path: file of the picture (.png, .svg, .pdf).
+        terrain: height map under the paths.
+        guide_paths: one guide path for each query; the first 200 are drawn.
+        reasons: reason why each path ended.
+        queries: queries with the goals of the paths.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.

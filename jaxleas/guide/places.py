@@ -1,4 +1,4 @@
-"""Where a robot can stand: drawing such places, and saying why it cannot stand elsewhere."""
+"""Where a robot can stand: draw such places, and explain why it cannot stand elsewhere."""
 
 import math
 from typing import NamedTuple
@@ -16,21 +16,21 @@ from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError, RootMotion, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
-"""A place is one to stand at if any of these headings is valid there [rad]."""
+"""A robot can stand at a place if any of these headings is valid there [rad]."""
 NEARBY = 0.1
 """Spacing of the grid on which the nearest valid pose is sought [m]."""
 _AT_ONCE, _FEW = 4096, 16  # poses judged in one compiled call
 
 
 MOST_TRIED = 1_000_000
-"""Points of that grid at most; on larger terrain it is coarser."""
+"""Maximum number of points of that grid; on larger terrain the grid is coarser."""
 
 
 class Pose(NamedTuple):
-    """Where an upright root is.
+    """The position and heading of an upright root.
 
     Attributes:
-        position: of the root in the world [m].
+        position: position of the root in the world [m].
         yaw: heading [rad].
     """
 
@@ -45,8 +45,8 @@ class Places:
         """Prepare.
 
         Args:
-            env: says what is valid, and how high the robot walks.
-            terrain: to stand on.
+            env: environment with the condition and the robot's walking height.
+            terrain: height map to stand on.
         """
         self.env, self.terrain = env, terrain
         self.atlas = make_atlas([terrain])
@@ -70,7 +70,7 @@ class Places:
     def standing(
         self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
     ) -> RootMotion:
-        """Return roots at rest at walking height; where there is no ground, at that over z = 0."""
+        """Return roots at rest at walking height; where there is no ground, above z = 0."""
         height = self.root_height(places)
         height = np.where(is_ground(height), height, self.env.robot.walking_height)
         position = np.column_stack([places, height]).astype(np.float32)
@@ -86,7 +86,7 @@ class Places:
         for first in range(0, len(places), _AT_ONCE):
             some = jax.tree.map(lambda leaf, at=first: leaf[at : at + _AT_ONCE], motion)
             count = len(some.yaw)
-            size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes serve all
+            size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes are enough
             padded = jax.tree.map(lambda leaf, n=count, to=size: _padded(leaf, to, n), some)
             parts.append({k: np.asarray(v)[:count] for k, v in self._judge(padded).items()})
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -110,13 +110,13 @@ class Places:
         """Draw places uniformly over those of the terrain that are valid with some heading.
 
         Args:
-            rng: to draw with.
-            count: of places.
-            clearance: as far away in eight directions it must be possible to stand too [m]; 0.3
-                leaves out the tops of narrow boxes, where nobody gets up or down.
+            rng: random generator to draw with.
+            count: number of places to draw.
+            clearance: distance at which the robot must also be able to stand in eight directions
+                [m]; 0.3 leaves out the tops of narrow boxes, which no robot can climb or leave.
 
         Raises:
-            InputError: there are hardly any.
+            InputError: there are hardly any such places.
         """
         x_min, x_max, y_min, y_max = self.terrain.extent
         found: list[np.ndarray] = []
@@ -133,16 +133,16 @@ class Places:
         raise InputError("there is hardly a place on this terrain where the robot can stand")
 
     def require_valid(self, name: str, place: tuple[float, float], yaw: float | None) -> Pose:
-        """Return the pose of a robot that stands there.
+        """Return the pose of a robot that stands at a place, if it is valid.
 
         Args:
-            name: of the pose, for messages: "--from", say.
-            place: x, y [m].
-            yaw: heading [rad]; None: any that is valid will do.
+            name: name of the pose in messages, such as "--from".
+            place: place x, y [m].
+            yaw: heading [rad]; None accepts any valid heading.
 
         Raises:
-            InputError: it cannot stand there: says which condition fails, by how much, and the
-                nearest pose that is valid.
+            InputError: the robot cannot stand there; the message says which condition fails, by
+                how much, and which valid pose is nearest.
         """
         here = np.array([place])
         headings = HEADINGS if yaw is None else np.array([yaw])
@@ -159,12 +159,12 @@ class Places:
     def why_invalid(
         self, place: Float[np.ndarray, " 2"], headings: Float[np.ndarray, " H"], facing: str
     ) -> str:
-        """Return why a robot can stand at a place with none of some headings, and by how much.
+        """Return why a robot can stand at a place with none of the headings, and by how much.
 
         Args:
-            place: x, y [m].
+            place: place x, y [m].
             headings: headings that were tried [rad].
-            facing: those headings in words: "at yaw 1.5", say.
+            facing: those headings in words, such as "at yaw 1.5".
         """
         x_min, x_max, y_min, y_max = self.terrain.extent
         x, y = place
@@ -219,7 +219,7 @@ class Places:
 
 
 def on_host(position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray) -> RootMotion:
-    """Return a root motion of NumPy arrays: a search looks at it value by value."""
+    """Return a root motion of NumPy arrays, which a search reads value by value."""
     return RootMotion(position, velocity, yaw)  # type: ignore[arg-type]
 
 

@@ -17,15 +17,15 @@ STANDING = 1e-4  # [m/s]: slower than this along the ground, a velocity shows no
 
 @struct.dataclass
 class RbKino:
-    """Go to the goal, and stand there, as fast as bounded velocities and accelerations allow.
+    """Move to rest at the goal as fast as bounded velocities and accelerations allow.
 
-    The slowest axis sets the time, the others take as long (`double_integrator.connect`); yaw
-    follows the horizontal velocity and therefore jumps at the start. Stateless: what is left of
-    a connection is the connection of what is left, so that one solved anew at each step is the
-    one solved at the start.
+    The slowest axis sets the time, and the others take as long (`double_integrator.connect`); yaw
+    follows the horizontal velocity and therefore jumps at the start. The method has no state: the
+    rest of a connection is itself the connection from there to the goal, so that solving it again
+    at each step gives the motion that was solved at the start.
 
     Attributes:
-        time_step: between two configurations [s].
+        time_step: time between two configurations [s].
         max_velocity: bound on each axis's velocity [m/s]; a robot that starts faster along an
             axis may keep that speed.
         max_acceleration: bound on each axis's acceleration [m/s^2].
@@ -50,7 +50,7 @@ class RbKino:
         """Return the whole connection to rest at a goal.
 
         Args:
-            motion: of the root at the start.
+            motion: root motion at the start.
             goal: root position in the world [m].
         """
         limit = jnp.maximum(jnp.abs(motion.velocity), self.max_velocity)
@@ -68,12 +68,12 @@ class RbKino:
         """Return the root motion on the way.
 
         Args:
-            connection: that began with `motion`.
-            motion: of the root at the start.
-            time: since the start [s].
+            connection: connection that begins with `motion`.
+            motion: root motion at the start.
+            time: time since the start [s].
         """
         covered, velocity = connection.at(time)
-        # At the end the robot stands, and looks where it was going last.
+        # At the end the robot stands, with the heading of its last movement.
         last = jnp.maximum(connection.duration - 0.5 * self.time_step, 0.0)
         _, heading = connection.at(jnp.minimum(time, last))
         speed = jnp.sqrt(jnp.sum(heading[..., :2] ** 2, axis=-1))
@@ -94,7 +94,7 @@ def rb_kino(limits: MotionLimits, desired_speed: float) -> RbKino:
     direction, the norms stay within v_max and a_max.
 
     Args:
-        limits: time step, v_max and a_max.
+        limits: motion limits: time step, v_max and a_max.
         desired_speed: v_desired [m/s].
 
     Raises:

@@ -9,8 +9,8 @@ from jaxleas.envs.steering.config import MotionLimits
 from jaxleas.geometry.rotations import wrap_angle
 from jaxleas.types import InputError, RootMotion
 
-# Walking on by this heading would miss the goal by less than this [m]: it counts as facing it.
-# An angle alone would not do: close to the goal the bearing is mostly rounding.
+# A heading counts as facing the goal if walking along it would miss the goal by less than this [m].
+# A bound on the angle would not suffice: close to the goal the bearing is mostly rounding.
 FACING = 1e-4
 
 
@@ -18,10 +18,11 @@ FACING = 1e-4
 class RbLin:
     """Turn on the spot at omega_max, then move in a straight line in space at v_desired.
 
-    Stateless, and exact: the last turn and the last step are shortened to end on the goal.
+    The method has no state and is exact: the last turn and the last step are shortened to end on
+    the goal.
 
     Attributes:
-        time_step: between two configurations [s].
+        time_step: time between two configurations [s].
         max_turn_rate: omega_max [rad/s].
         desired_speed: v_desired [m/s].
     """
@@ -66,7 +67,7 @@ def rb_lin(limits: MotionLimits, desired_speed: float) -> RbLin:
     """Return RB-Lin (T sec. 3.1.1, 3.4.1).
 
     Args:
-        limits: time step and turn rate.
+        limits: motion limits: time step and turn rate.
         desired_speed: v_desired [m/s].
 
     Raises:

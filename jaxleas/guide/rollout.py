@@ -18,10 +18,10 @@ from jaxleas.types import GuidePath, InputError, RootMotion, cut_walks
 
 @struct.dataclass
 class Trips:
-    """N robots: where they begin and where they are sent.
+    """The starts and the waypoints of N robots.
 
     Attributes:
-        atlas: terrains.
+        atlas: terrains to walk on.
         map_index: terrain of each robot.
         start: root motion of each robot at its start.
         waypoints: points to reach one after another, the goal last [m]: x, y in the world, and the
@@ -39,15 +39,16 @@ class RollOut:
     """N walks of up to T steps; configurations after a walk's end repeat the last one.
 
     Attributes:
-        position: of the root in the world [m].
+        position: position of the root in the world [m].
         yaw: heading [rad].
-        velocity: of the root in the world [m/s].
-        margin: of the environment's condition [m].
-        valid: margin >= 0.
+        velocity: velocity of the root in the world [m/s].
+        margin: margin of the environment's condition [m].
+        valid: whether margin >= 0.
         end: index of the last configuration.
-        reached: the last waypoint was reached, every configuration valid.
-        invalid: the last configuration violates the condition.
-        refused: the environment's foresight refused the configuration that would have come next.
+        reached: whether the last waypoint was reached with every configuration valid.
+        invalid: whether the last configuration violates the condition.
+        refused: whether the environment's foresight refused the configuration that would have come
+            next.
     """
 
     position: Float[Array, "N T+1 3"]
@@ -67,13 +68,13 @@ class RollOut:
 
     @property
     def stopped(self) -> Bool[Array, " N"]:
-        """Valid to the end of the time, or refused, without reaching the goal."""
+        """Whether a walk ended valid without reaching the goal: out of time, or refused."""
         return ~(self.reached | self.invalid)
 
 
 @struct.dataclass
 class _Walk:
-    """The robots in mid-walk, and the record of where they have been, time first."""
+    """The robots during the walk, and the record of their configurations, time first."""
 
     step: Int[Array, ""]
     motion: RootMotion
@@ -118,11 +119,11 @@ class _Course:
         return (walk.step <= self.steps) & jnp.any(walk.walking)
 
     def look(self, walk: _Walk) -> tuple[_Walk, Float[Array, "N points"], Float[Array, "N 3"]]:
-        """Record and judge the configurations; return also local heights and goals."""
+        """Record and judge the configurations; also return local heights and goals."""
         heights = self.env.local_heights(self.atlas, self.map_index, walk.motion)
         margin = self.env.condition(heights, walk.motion)
         walking, sought = walk.walking, self._seek(walk)
-        invalid = walking & ~(margin >= 0.0)  # a NaN is no valid configuration
+        invalid = walking & ~(margin >= 0.0)  # a NaN margin is not valid, either
         refused, memory = self._foresee(walk, heights)
         refused &= walking & ~invalid
         walking &= ~refused
@@ -145,7 +146,7 @@ class _Course:
         return walk, heights, goal
 
     def _foresee(self, walk: _Walk, heights: Float[Array, "N points"]) -> tuple[Array, Any]:
-        """Return whom the foresight refuses now, and its memory; `begin` has shown it the first."""
+        """Return whom the foresight refuses now, and its memory; `begin` asked it at step 0."""
         if self.env.foresight is None:
             return jnp.zeros_like(walk.refused), walk.memory
         foreseen, after = self.env.foresight.follow(
@@ -156,7 +157,7 @@ class _Course:
         return later & ~(foreseen >= 0.0), memory
 
     def move(self, walk: _Walk, proposed: RootMotion) -> _Walk:
-        """Move the robots that still walk."""
+        """Move the robots that are still walking."""
         motion = jax.tree.map(
             lambda new, old: jnp.where(_like(walk.walking, new), new, old), proposed, walk.motion
         )
@@ -182,7 +183,7 @@ class _Course:
         )
 
     def _seek(self, walk: _Walk) -> Int[Array, " N"]:
-        """Return the first waypoint, from the one sought on, that is far: several may be close."""
+        """Return the first waypoint from the current one on that is far: several may be close."""
         offset = self.waypoints[..., :2] - walk.motion.position[:, None, :2]
         far = jnp.sum(offset * offset, axis=-1) > self.radius**2
         index = jnp.arange(self.waypoints.shape[1])
@@ -199,14 +200,14 @@ def roll_out(
     A walk ends where its last waypoint is reached (all of them within `radius`, horizontally, one
     after another), at its first invalid configuration (which belongs to it), before the first that
     the environment's foresight refuses (asked with chance 0: by its threshold alone), or after
-    `steps` steps. The computation ends when nobody walks any more. It is compiled once for each
+    `steps` steps. The computation ends when every walk has ended. It is compiled once for each
     environment, kind of method and shapes.
 
     Args:
-        env: steering task: it observes, and its condition judges each configuration.
-        method: steering method; one that `runs_on_host` is driven from a Python loop.
+        env: steering task that observes, and whose condition judges each configuration.
+        method: steering method; one that `runs_on_host` is called from a Python loop.
         trips: starts and waypoints of the robots.
-        steps: most time steps that a walk may take.
+        steps: maximum number of time steps of a walk.
         radius: distance within which a waypoint is reached [m] (T sec. 3.4.2).
 
     Raises:
@@ -224,7 +225,7 @@ def roll_out(
     if getattr(method, "runs_on_host", False):
         return _walk_on_host(course, method, start)
     if jax.tree_util.treedef_is_leaf(jax.tree.structure(method)):
-        method = jax.tree_util.Partial(method)  # a plain callable, told apart by identity
+        method = jax.tree_util.Partial(method)  # a plain callable, distinguished by identity
     return _walk_on_device(course, method, start)
 
 
@@ -238,7 +239,7 @@ def _walk_on_device(course: _Course, method: SteeringMethod, start: RootMotion) 
 
 
 def _walk_on_host(course: _Course, method: SteeringMethod, start: RootMotion) -> RollOut:
-    # Copies: what is donated below must be neither the caller's start nor one array twice.
+    # Copies: the arrays donated below must be neither the caller's start nor one array twice.
     walk = jax.tree.map(jnp.copy, course.begin(start))
     while course.goes_on(walk):
         walk, heights, goal = _look(course, walk)
@@ -255,8 +256,8 @@ def paths(rollout: RollOut, time_step: float) -> list[GuidePath]:
     """Return each walk as a guide path, cut after its last configuration.
 
     Args:
-        rollout: of N robots.
-        time_step: between two configurations [s].
+        rollout: roll-out of N robots.
+        time_step: time between two configurations [s].
     """
     host = jax.tree.map(np.asarray, rollout)
     return cut_walks(host, host.valid, host.end + 1, time_step)

@@ -1,4 +1,4 @@
-"""Where a robot begins: a valid place with room around it, or the one that was asked for."""
+"""Where a robot begins: a valid place with room around it, or a given place."""
 
 import numpy as np
 from jaxtyping import Float
@@ -10,17 +10,18 @@ from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError
 
 MOST_PLACES = 5_000
-SPACING = 0.25  # between places that are tried [m]; wider on maps that are larger
-ROOM = 5  # places along each side of the square of valid ones in whose middle to begin
+SPACING = 0.25  # distance between places that are tried [m]; wider on larger maps
+ROOM = 5  # places along each side of a square of valid places; the robot begins in its middle
 
 
 def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
-    """Return a valid standing pose with room around it, as far back (least x) as there is one.
+    """Return the valid standing pose with room around it that is farthest back (least x).
 
-    It looks along x, and among equals stands in the middle of the map's width.
+    The robot faces along x; among equals the pose nearest to the middle of the map's width is
+    chosen.
 
     Args:
-        env: steering task: its robot stands, and its condition judges.
+        env: steering task whose robot stands and whose condition judges.
         terrain: height map to stand on.
 
     Raises:
@@ -46,12 +47,13 @@ def require_start(env: SteeringEnv, terrain: HeightMap, start: tuple[float, floa
     """Return the standing pose at a place, if it is valid.
 
     Args:
-        env: steering task: its robot stands, and its condition judges.
+        env: steering task whose robot stands and whose condition judges.
         terrain: height map to stand on.
-        start: x, y [m] and heading [deg].
+        start: start x, y [m] and heading [deg].
 
     Raises:
-        InputError: it is not: says which condition fails, by how much, and where it would hold.
+        InputError: the pose is not valid; the message says which condition fails, by how much, and
+            where it would hold.
     """
     x, y, degrees = start
     where = f"--start {x:g} {y:g} {degrees:g}"

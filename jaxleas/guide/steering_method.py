@@ -1,4 +1,4 @@
-"""What a steering method is: local terrain, root motion and goal in, the next root motion out."""
+"""The steering method's protocol: from local terrain, root motion and goal to the next motion."""
 
 from typing import Literal, Protocol
 
@@ -9,10 +9,10 @@ from jaxleas.types import RootMotion
 
 
 class SteeringMethod(Protocol):
-    """Moves roots one time step towards their goals (T sec. 3.1.1); `roll_out` calls it.
+    """A callable that moves roots one time step towards their goals (T sec. 3.1.1).
 
-    A method that is a pytree (a `flax.struct` dataclass) may change its arrays without being
-    compiled again; any other callable works too and is compiled once for each object.
+    `roll_out` calls it. A method that is a pytree (a `flax.struct` dataclass) may change its arrays
+    without a new compilation; any other callable works too and is compiled once for each object.
     """
 
     def __call__(
@@ -25,16 +25,16 @@ class SteeringMethod(Protocol):
 
         Args:
             heights_in_root: the environment's local heights, relative to the root [m].
-            motion: of the root now.
-            goal: in the world: x, y, and the root's height wanted there [m].
+            motion: current root motion.
+            goal: goal in the world: x, y, and the root's height wanted there [m].
         """
         ...
 
 
 class HostSteeringMethod(SteeringMethod, Protocol):
-    """A steering method that computes outside JAX; `roll_out` drives it from a Python loop."""
+    """A steering method that computes outside JAX; `roll_out` calls it from a Python loop."""
 
     @property
     def runs_on_host(self) -> Literal[True]:
-        """Tell `roll_out` that this method cannot be traced."""
+        """Return True: `roll_out` cannot trace this method."""
         ...

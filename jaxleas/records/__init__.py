@@ -1,4 +1,4 @@
-"""What runs have left behind: listed and compared."""
+"""Records of runs: listed and compared."""
 
 from jaxleas.records.comparison import Comparison, compare_runs
 from jaxleas.records.finding import find_runs

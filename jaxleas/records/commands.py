@@ -38,19 +38,19 @@ def runs(
     where: Sequence[str] | None = None,
     json: bool = False,
 ) -> None:
-    """List the runs below a folder: how far they came, how well they do, what they were told.
+    """List the runs below a folder: their progress, success and configuration.
 
     Args:
-        folder: to look in; a sweep's trials and a distillation's rounds are found, too.
-        sort: by this column; runs that have no value in it come last.
-        reverse: the other way round.
-        state: show only finished, running, interrupted or damaged ones.
-        name: show only folders that match, as 'leas_*'.
-        where: show only runs configured so, as seed=1 ppo.discount=0.99.
-        json: write plain values in place of the table.
+        folder: folder to search; a sweep's trials and a distillation's rounds are found, too.
+        sort: column to sort by; runs without a value in it come last.
+        reverse: reverse the order.
+        state: show only finished, running, interrupted or damaged runs.
+        name: show only folders that match a pattern, such as 'leas_*'.
+        where: show only runs with these settings, such as seed=1 ppo.discount=0.99.
+        json: write plain values instead of the table.
 
     Raises:
-        InputError: there is no such folder, or no such field to choose by.
+        InputError: there is no such folder, or no such field to select by.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -82,16 +82,16 @@ def compare(
     picture: Path | None = None,
     html: Path | None = None,
 ) -> None:
-    """Put runs side by side: what differs in configuration and origin, curves, success.
+    """Compare runs side by side: differences in configuration and origin, curves, success.
 
     Args:
-        runs: two run folders or more.
-        json: where to write the comparison as plain values.
-        picture: where to draw the learning curves, .png.
-        html: where to write all of it as one file.
+        runs: two or more run folders.
+        json: file for the comparison as plain values.
+        picture: file for a picture of the learning curves, .png.
+        html: file for the whole comparison as one HTML page.
 
     Raises:
-        InputError: there are not two, or one of them is no run folder.
+        InputError: there are fewer than two folders, or one of them is not a run folder.
     """
     if len(runs) < 2:
         raise InputError(f"there is only {runs[0]} to compare: give two run folders or more")

@@ -1,4 +1,4 @@
-"""Runs side by side: what differs in their configuration and origin, and how well they did."""
+"""Runs side by side: the differences in their configuration and origin, and their success."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.records.record import HELD_OUT, RunRecord
 
 MARKS = 10
-"""Points of a learning curve in a table."""
+"""Number of points of a learning curve in a table."""
 UNTOLD = ("provenance.created", "provenance.command", "provenance.git.untracked")
-"""Differ from run to run and say nothing about the result."""
+"""Keys that differ from run to run and say nothing about the result."""
 
 
 @dataclass(frozen=True)
@@ -25,14 +25,15 @@ class Score:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Runs side by side; every list has one value a run, None where a run has none.
+    """Runs side by side; every list has one value per run, None where a run has no value.
 
     Attributes:
-        runs: compared.
-        config: values by dotted key, of the keys that differ.
-        provenance: likewise.
-        curves: held-out success by step, at some steps: the last examination up to there.
-        scores: by suite and cell.
+        runs: runs that are compared.
+        config: values of the configuration by dotted key, for the keys that differ.
+        provenance: values of the provenance by dotted key, for the keys that differ.
+        curves: held-out success by step, at some steps: that of the last examination up to the
+            step.
+        scores: scores by suite and cell.
     """
 
     runs: tuple[RunRecord, ...]
@@ -43,7 +44,7 @@ class Comparison:
 
 
 def compare_runs(runs: Sequence[RunRecord]) -> Comparison:
-    """Put runs side by side."""
+    """Compare runs side by side."""
     origins = [{f"provenance.{key}": each for key, each in run.provenance.items()} for run in runs]
     return Comparison(
         runs=tuple(runs),
@@ -66,7 +67,7 @@ def differing(values: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
 
 
 def apart(scores: Sequence[Score | None]) -> bool:
-    """Whether the intervals of any two scores have nothing in common."""
+    """Return whether the intervals of any two scores are disjoint."""
     known = [each for each in scores if each is not None]
     return bool(known) and max(each.low for each in known) > min(each.high for each in known)
 
@@ -80,7 +81,7 @@ def _curves(runs: Sequence[RunRecord]) -> dict[int, list[Score | None]]:
 def _at(run: RunRecord, step: int) -> Score | None:
     """Return the last examination of a run up to a step; None after its end."""
     examined = [row for row in run.metrics if row.get(HELD_OUT) is not None and row["step"] <= step]
-    # A run that ended a little before the mark, by rounding to whole updates, is still told.
+    # A run that ended a little before the mark, by rounding to whole updates, still counts.
     if not examined or run.steps < 0.98 * step:
         return None
     starts = int(run.config.get("held_out.starts", 1))

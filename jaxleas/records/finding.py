@@ -1,20 +1,21 @@
-"""Which folders below a folder are runs."""
+"""Finding the run folders below a folder."""
 
 import os
 from collections.abc import Iterator
 from pathlib import Path
 
 DEPTH = 5
-"""Folders in folders: a sweep's trials and a distillation's rounds lie two or three deep."""
+"""Depth of the search: a sweep's trials and a distillation's rounds are two or three deep."""
 MARKS = ("provenance.json", "lock")
-"""A training makes the second first and the first last; nothing else makes either."""
+"""Files of a run: training makes the second one first and the first one last, and nothing else
+makes either."""
 
 
 def find_runs(folder: str | Path) -> list[Path]:
     """Return the run folders at or below a folder, whole or not, by name.
 
     Args:
-        folder: to look in; hidden folders are passed over, links are followed once.
+        folder: folder to search; hidden folders are skipped, links are followed once.
     """
     return sorted(_runs(Path(folder), DEPTH, set()))
 
@@ -31,7 +32,7 @@ def _runs(folder: Path, depth: int, seen: set[Path]) -> Iterator[Path]:
     try:
         with os.scandir(folder) as entries:
             inner = sorted(entry.name for entry in entries if entry.is_dir())
-    except OSError:  # not ours to read
+    except OSError:  # no permission to read it
         return
     for name in inner:
         if not name.startswith("."):

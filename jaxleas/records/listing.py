@@ -20,16 +20,16 @@ HEADINGS = (
 )
 LEFT = ("run", "state", "begun", "revision", "configuration")
 LEAST = 24
-"""Width that is always left for the configuration."""
+"""Minimum width of the configuration's column."""
 
 
 def table(records: Sequence[RunRecord], folder: Path, width: int) -> str:
-    """Return the runs as a table for a terminal, and what is wrong with the damaged ones.
+    """Return runs as a table for a terminal, with the problems of damaged runs.
 
     Args:
-        records: in the order to be shown.
-        folder: that was looked in; runs are named from there.
-        width: of the terminal; configurations are cut to it.
+        records: runs in the order to be shown.
+        folder: folder that was searched; the runs' names are relative to it.
+        width: width of the terminal, to which configurations are cut.
     """
     rows = [_row(record, folder) for record in records]
     used = sum(max(map(len, column)) + 2 for column in zip(HEADINGS, *rows, strict=True)) - 2
@@ -40,12 +40,12 @@ def table(records: Sequence[RunRecord], folder: Path, width: int) -> str:
 
 
 def cut(text: str, width: int) -> str:
-    """Return text that fits, with ... where something was left out."""
+    """Return a text cut to a width, with ... where something was left out."""
     return text if len(text) <= width else text[: max(width - 4, 0)].rstrip() + " ..."
 
 
 def as_text(value: Any) -> str:
-    """Return a value of a configuration as its reader writes it."""
+    """Return a value of a configuration as a user writes it."""
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(as_text, value))}]"
     if isinstance(value, bool) or value is None:
@@ -56,7 +56,7 @@ def as_text(value: Any) -> str:
 
 
 def duration(seconds: float | None) -> str:
-    """Return a time as a person says it."""
+    """Return a time in hours and minutes, or in minutes and seconds."""
     if seconds is None:
         return "-"
     minutes, rest = divmod(round(seconds), 60)
@@ -67,7 +67,7 @@ def duration(seconds: float | None) -> str:
 
 
 def as_json(record: RunRecord) -> Mapping[str, Any]:
-    """Return a run as plain values, its metrics left out."""
+    """Return a run as plain values, without its metrics."""
     return {
         "path": str(record.path),
         "state": record.state,

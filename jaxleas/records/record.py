@@ -1,4 +1,4 @@
-"""One run as its folder tells it, however far it came and whatever became of it."""
+"""One run as recorded in its folder, whatever its state."""
 
 import json
 from collections.abc import Mapping
@@ -26,23 +26,23 @@ SUITE = "transitions"
 
 @dataclass(frozen=True)
 class RunRecord:
-    """What is known of a run; what is not known is None or empty.
+    """The known facts of a run; an unknown one is None or empty.
 
     Attributes:
-        path: its folder.
-        state: damaged where a file of it cannot be read.
-        problem: what is wrong with a damaged one, a sentence.
-        created: ISO 8601, UTC.
+        path: folder of the run.
+        state: state of the run; damaged if one of its files cannot be read.
+        problem: problem of a damaged run, in a sentence.
+        created: time of its start, ISO 8601, UTC.
         source: stem of the configuration file it was trained from.
-        revision: of git, twelve digits, with a + where files were changed.
-        config: the resolved configuration, flat: values by dotted key.
-        provenance: where it comes from, flat likewise.
+        revision: git revision, twelve digits, with a + where files were changed.
+        config: resolved configuration, flat: values by dotted key.
+        provenance: provenance, flat: values by dotted key.
         metrics: rows of metrics.jsonl.
-        steps: done.
-        total: to be done.
-        seconds: of training.
+        steps: number of steps done.
+        total: number of steps to be done in all.
+        seconds: duration of training [s].
         held_out: best share of held-out starts that reached the goal.
-        evaluations: by suite.
+        evaluations: results by suite.
     """
 
     path: Path
@@ -62,30 +62,30 @@ class RunRecord:
 
     @property
     def name(self) -> str:
-        """Its folder, for people."""
+        """Name of the run's folder."""
         return str(self.path)
 
     @property
     def success(self) -> float | None:
-        """Mean success over the cells of the transitions suite, if it was judged."""
+        """Mean success over the cells of the transitions suite, if the run was judged on it."""
         cells = self.cells(SUITE)
         return sum(cell.success for cell in cells) / len(cells) if cells else None
 
     @property
     def differences(self) -> dict[str, Any]:
-        """What its configuration states that is not the default."""
+        """Values of the configuration that differ from the defaults."""
         usual = defaults(self.config.get("env.task", DEFAULT_TASK))
         return {key: value for key, value in self.config.items() if usual.get(key) != value}
 
     def cells(self, suite: str) -> list[CellResult]:
-        """Return the cells of a suite in which its own policy was judged, by the conditions."""
+        """Return the cells of a suite in which the run's policy was judged by the conditions."""
         found = self.evaluations.get(suite)
         cells = () if found is None else found.cells
         return [each for each in cells if each.method not in BASELINES and each.planner is None]
 
 
 def read_record(path: str | Path) -> RunRecord:
-    """Return what a folder tells of its run; never fails: a damaged one says so itself."""
+    """Return the record of a run's folder; a damaged run is a state, not an exception."""
     path = Path(path)
     found: dict[str, Any] = {}
     problems = []
@@ -98,15 +98,15 @@ def read_record(path: str | Path) -> RunRecord:
             problems.append(f"{path}: {read.__name__[1:]} cannot be understood: {error!r}")
     done = found.get("steps", 0) >= (found.get("total") or float("inf"))
     finished = done and (path / "policy.npz").is_file()
-    # Asked only of those that may be at work: asking holds the lock for a moment.
+    # Only runs that may be running are asked: asking holds the lock for a moment.
     state: State = "finished" if finished else "running" if is_held(path) else "interrupted"
-    if problems and state != "running":  # one that begins just now is not whole yet
+    if problems and state != "running":  # a run that is just beginning is not complete yet
         state = "damaged"
     return RunRecord(path, state, problem=problems[0] if problems else "", **found)
 
 
 def flat(value: Any, prefix: str = "") -> dict[str, Any]:
-    """Return nested mappings as one, with dotted keys."""
+    """Return nested mappings as one mapping with dotted keys."""
     if not isinstance(value, Mapping):
         return {prefix.removesuffix("."): value}
     return {
@@ -119,7 +119,7 @@ def flat(value: Any, prefix: str = "") -> dict[str, Any]:
 def defaults(task: str = DEFAULT_TASK) -> dict[str, Any]:
     """Return the default configuration of a task, flat.
 
-    Of a task of somebody's own, whose code a list of runs does not run, the sections that every
+    For a user's own task, whose code a list of runs does not run, it has the sections that every
     run has.
     """
     if task in TASKS:
@@ -132,7 +132,7 @@ def defaults(task: str = DEFAULT_TASK) -> dict[str, Any]:
 def _config(path: Path) -> dict[str, Any]:
     if not (path / "config.yaml").is_file():
         raise InputError(f"{path} is half-written: it holds no config.yaml")
-    # As it is, not validated: a run of another version is still a run.
+    # Not validated: a run of another version is still a run.
     plain = _plain(read_mapping(path / "config.yaml"))
     task = plain["env"].get("task") if isinstance(plain.get("env"), dict) else None
     usual = defaults(str(task or DEFAULT_TASK))
@@ -190,5 +190,5 @@ def _evaluations(path: Path) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Return YAML values as JSON has them: a date, say, becomes text."""
+    """Return YAML values as JSON values: a date, for example, becomes text."""
     return json.loads(json.dumps(value, default=str))

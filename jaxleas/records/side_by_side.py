@@ -14,12 +14,12 @@ from jaxleas.reports.learning_curves import COLOURS, DPI, series
 
 TEMPLATE = "comparison.html"
 WIDEST = 44
-"""A value of a configuration or provenance, in a table [characters]."""
+"""Maximum width of a value of a configuration or provenance in a table [characters]."""
 
 
 @dataclass(frozen=True)
 class Section:
-    """A table under a title; `remark` says what its reader must know."""
+    """A table under a title; `remark` explains it."""
 
     title: str
     headings: tuple[str, ...]
@@ -28,7 +28,7 @@ class Section:
 
 
 def names_of(comparison: Comparison) -> list[str]:
-    """Return the runs' names, as short as they are still told apart."""
+    """Return the shortest names that still distinguish the runs."""
     paths = [run.path.resolve().parts for run in comparison.runs]
     names = [str(run.path) for run in comparison.runs]
     for count in range(max(map(len, paths)), 0, -1):
@@ -40,7 +40,7 @@ def names_of(comparison: Comparison) -> list[str]:
 
 
 def sections(comparison: Comparison) -> list[Section]:
-    """Return everything that differs and everything measured, as tables."""
+    """Return all differences and all measurements as tables."""
     names = tuple(names_of(comparison))
     runs = comparison.runs
     overview = [
@@ -79,7 +79,7 @@ def sections(comparison: Comparison) -> list[Section]:
 
 
 def plain(comparison: Comparison) -> str:
-    """Return the comparison for a terminal."""
+    """Return the comparison as text for a terminal."""
     blocks = []
     for section in sections(comparison):
         lines = [section.title] + ([f"({section.remark})"] if section.remark else [])
@@ -139,7 +139,7 @@ def draw(comparison: Comparison) -> bytes:
 
 
 def to_html(comparison: Comparison) -> str:
-    """Return the comparison as one HTML file that needs nothing else."""
+    """Return the comparison as one self-contained HTML file."""
     picture = base64.b64encode(draw(comparison)).decode("ascii")
     return page_template("jaxleas.records", TEMPLATE).render(
         names=names_of(comparison), sections=sections(comparison), picture=picture

@@ -1,4 +1,4 @@
-"""The robots: trunk, limbs, effectors, ranges of motion, mass; one file a robot."""
+"""The robots: trunk, limbs, effectors, ranges of motion, mass; one file per robot."""
 
 from jaxleas.robots.catalogue import load_robot, robot_names
 from jaxleas.robots.digest import robot_digest

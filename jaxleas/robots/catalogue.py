@@ -1,4 +1,4 @@
-"""Robots by name: those that come with the package, and files of one's own."""
+"""Robots by name: those of the package, and the user's own files."""
 
 import difflib
 import re
@@ -11,12 +11,12 @@ from jaxleas.robots.robot import Robot
 from jaxleas.types.errors import InputError
 
 FOLDER = Path("robots")
-"""Files of one's own are looked for here, in the working folder."""
+"""Folder of the user's own robot files, in the working folder."""
 
 
 @cache
 def robot_names() -> tuple[str, ...]:
-    """Return the names of the robots that come with the package."""
+    """Return the names of the package's robots."""
     shipped = resources.files("jaxleas.robots") / "data"
     return tuple(
         sorted(file.name.removesuffix(".json") for file in shipped.iterdir() if _is_json(file.name))
@@ -24,10 +24,10 @@ def robot_names() -> tuple[str, ...]:
 
 
 def load_robot(name: str) -> Robot:
-    """Return a robot: of the package, of the file `robots/<name>.json`, or of a path.
+    """Return a robot from the package, from the file `robots/<name>.json`, or from a path.
 
     Args:
-        name: name of a robot, or path of its file, which ends with .json.
+        name: name of a robot, or path of its file, which ends in .json.
 
     Raises:
         InputError: there is no such robot, or its file does not describe it.
@@ -37,7 +37,7 @@ def load_robot(name: str) -> Robot:
     if _is_json(str(name)):
         return read_robot(name)
     file = FOLDER / f"{name}.json"
-    # A name, never a way out of the folder.
+    # A name must not lead out of the folder.
     if re.fullmatch(r"[\w-]+", str(name)) and file.is_file():
         return _require_name(read_robot(file), name, file)
     known = sorted({*robot_names(), *(path.stem for path in FOLDER.glob("*.json"))})

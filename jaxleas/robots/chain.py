@@ -27,7 +27,7 @@ class SerialChain:
         tip: pose of the effector in the frame of the last link.
 
     Raises:
-        InputError: shapes disagree, an axis is not of unit length, or limits are no intervals.
+        InputError: shapes disagree, an axis is not of unit length, or limits are not intervals.
     """
 
     names: tuple[str, ...]
@@ -56,7 +56,7 @@ class SerialChain:
                     f"a chain of {count} joints needs finite {key} of shape {shape}, not of shape"
                     f" {array.shape}"
                 )
-        with np.errstate(over="ignore"):  # files of strangers hold numbers of any size
+        with np.errstate(over="ignore"):  # untrusted files may hold numbers of any size
             length = np.linalg.norm(self.axes, axis=1)
         if np.abs(length - 1.0).max() > 1e-6:
             raise InputError("the axes of a chain's joints must have length 1")
@@ -74,17 +74,17 @@ class SerialChain:
 
     @cached_property
     def turned(self) -> tuple[bool, ...]:
-        """Whether each joint's frame is turned against the link before at angle 0."""
+        """Whether each joint's frame is rotated relative to the previous link at angle 0."""
         return tuple(bool(np.any(each != np.eye(3))) for each in self.rotations)
 
     @cached_property
     def turned_tip(self) -> bool:
-        """Whether the effector's frame is turned against the last link."""
+        """Whether the effector's frame is rotated relative to the last link."""
         return bool(np.any(self.tip.rotation != np.eye(3)))
 
     @cached_property
     def offsets(self) -> tuple[tuple[tuple[int, float], ...], ...]:
-        """Nonzero coordinates of each joint's position, then of the tip's, with their index [m]."""
+        """Nonzero coordinates of the positions of joints and tip, with their indices [m]."""
         places = [*self.positions, self.tip.position]
         return tuple(
             tuple((index, float(place[index])) for index in range(3) if place[index])
@@ -101,7 +101,7 @@ class SerialChain:
 
     @cached_property
     def mirror_signs(self) -> Float[np.ndarray, " J"]:
-        """Angles of this chain times these are those of its mirror image in the mirrored posture.
+        """Signs that turn this chain's angles into its mirror image's in the mirrored posture.
 
         A mirror turns the axis a, a pseudovector, into -S a with S = diag(1, -1, 1). Where that
         points backwards, the mirror image's joint turns about S a and counts the other way.
@@ -109,7 +109,7 @@ class SerialChain:
         return np.where((-self.axes * _MIRROR * self.axes).sum(axis=1) < 0.0, -1.0, 1.0)
 
     def mirrored(self) -> "SerialChain":
-        """Return the mirror image in the plane y = 0: the right limb's chain of the left one's."""
+        """Return the mirror image in the plane y = 0: a right limb's chain from the left one's."""
         signs, both = self.mirror_signs, np.outer(_MIRROR, _MIRROR)
         backwards = signs < 0.0
         return SerialChain(
@@ -125,7 +125,7 @@ class SerialChain:
 
 @dataclass(frozen=True, eq=False)
 class ChainPosture:
-    """Where the links of a chain are, in the root frame.
+    """The poses of a chain's links in the root frame.
 
     Attributes:
         frames: orientation of each link, turned by its joint.
@@ -141,7 +141,7 @@ class ChainPosture:
 
 
 def chain_posture(chain: SerialChain, angles: Float[np.ndarray, "*batch J"]) -> ChainPosture:
-    """Place the links of a chain in the root frame.
+    """Return the posture of a chain in the root frame.
 
     Args:
         chain: chain of joints.
@@ -199,7 +199,7 @@ def _turn(
 ) -> None:
     """Write `before` times the joint's rotation into `out`."""
     along = chain.along[joint]
-    if along is not None:  # two columns mix, the third stays
+    if along is not None:  # two columns mix, the third does not change
         first, second = (along + 1) % 3, (along + 2) % 3
         out[..., along] = before[..., along]
         out[..., first] = cosine * before[..., first] + sine * before[..., second]

@@ -1,4 +1,4 @@
-"""Where a limb touches: a foot, a palm or a point foot."""
+"""Effectors, where a limb touches: a foot, a palm or a point foot."""
 
 from dataclasses import dataclass, field
 from typing import Literal, get_args
@@ -13,7 +13,7 @@ Kind = Literal["foot", "palm", "point_foot"]
 """A foot stands with a sole, a palm presses against surfaces of any slope, a point foot stands
 without a sole."""
 FOOT_OF_LIMB = {"left": "LF", "right": "RF"}
-"""Names of a biped's feet where its file gives none; a foot of another limb has the limb's name."""
+"""Default names of a biped's feet; by default a foot of another limb has the limb's name."""
 
 
 LIMB_OF_FOOT = {foot: limb for limb, foot in FOOT_OF_LIMB.items()}
@@ -25,13 +25,14 @@ class Effector:
 
     Attributes:
         name: name in contact problems and plans, such as "LF".
-        kind: what sort of effector it is.
-        half_size: half length and half width of what touches [m]; zeros for a point foot.
+        kind: kind of effector.
+        half_size: half length and half width of the touching surface [m]; zeros for a point foot.
         friction: friction coefficient mu between effector and surface [1].
-        force_limit: largest force along the contact normal [N]; None where there is no limit.
-        link: name of the URDF's link that it belongs to; empty where no URDF is known.
-        frame: pose of the effector in the frame of that link: its origin is the middle of what
-            touches, its first axis runs along the length, its third one away from the surface.
+        force_limit: largest force along the contact normal [N]; None for no limit.
+        link: name of the URDF's link that it belongs to; empty if no URDF is known.
+        frame: pose of the effector in the frame of that link: its origin is the middle of the
+            touching surface, its first axis runs along the length, its third one away from the
+            contact surface.
 
     Raises:
         InputError: the kind is unknown, or a number is out of range.
@@ -76,12 +77,15 @@ class Effector:
 
     @property
     def stands(self) -> bool:
-        """Whether it carries a walking robot: feet do, palms do not."""
+        """Whether the effector carries a walking robot: feet do, palms do not."""
         return self.kind != "palm"
 
     @property
     def corners(self) -> Float[np.ndarray, "C 3"]:
-        """Corners of what touches, counter-clockwise in its frame [m]; a point foot has one."""
+        """Corners of the touching surface, counter-clockwise in the effector's frame [m].
+
+        A point foot has one corner.
+        """
         x, y = self.half_size
         if self.kind == "point_foot":
             return np.zeros((1, 3))

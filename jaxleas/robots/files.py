@@ -24,9 +24,8 @@ from jaxleas.types.errors import InputError
 def read_robot(path: str | Path) -> Robot:
     """Return the robot described by a JSON file.
 
-    Files without `effector`, `reference`, `start_heights`, `contact_window` or `steps` are those of
-    earlier versions:
-    their robots get feet of the file's `foot_half_size` and `friction`.
+    Files without `effector`, `reference`, `start_heights`, `contact_window` or `steps` come from
+    earlier versions: their robots get feet with the file's `foot_half_size` and `friction`.
 
     Raises:
         InputError: the file is missing, is not JSON, or a key is missing or malformed.
@@ -64,7 +63,7 @@ def read_robot(path: str | Path) -> Robot:
 
 
 def write_robot(path: str | Path, robot: Robot, **notes: Any) -> None:
-    """Write `robot` as JSON, with `notes` (provenance) that `read_robot` passes over."""
+    """Write `robot` as JSON, with `notes` (provenance) that `read_robot` ignores."""
     described = {
         "name": robot.name,
         **notes,
@@ -129,7 +128,7 @@ def _limb(described: dict[str, Any], model: LimbModel | None) -> Limb:
 
 
 def _model_to_json(limb: Limb, limbs: tuple[Limb, ...]) -> dict[str, Any]:
-    """Return a limb's model, or the name of the limb before it that it is the mirror image of."""
+    """Return a limb's model, or the name of the earlier limb whose mirror image it is."""
     if limb.model is None:
         return {}
     content = limb_model_to_json(limb.model)

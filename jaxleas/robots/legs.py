@@ -1,4 +1,4 @@
-"""Two legs that are mirror images, as a planner that moves their joints sees them."""
+"""Two legs that are mirror images, for planners that move their joints."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -14,19 +14,19 @@ from jaxleas.robots.talos import load_talos
 from jaxleas.types.errors import InputError
 
 _ALIKE = 1e-6
-"""Geometry of two legs that are mirror images agrees within this [m and rad]."""
+"""Tolerance of the geometry of two legs that are mirror images [m and rad]."""
 
 
 @dataclass(frozen=True, eq=False)
 class LegModel:
-    """The left leg, and the body between the legs; the right leg is the left one's mirror image.
+    """The left leg and the body; the right leg is the mirror image of the left one.
 
-    For the right leg mirror what goes in and what comes out in the root's plane y = 0: positions
-    by (1, -1, 1), rotations by that on both sides, angles by `mirror_signs`.
+    For the right leg mirror inputs and outputs in the root's plane y = 0: positions by (1, -1, 1),
+    rotations by that on both sides, angles by `mirror_signs`.
 
     Attributes:
-        left: left leg.
-        body: all of the robot but its legs.
+        left: model of the left leg.
+        body: all of the robot except its legs.
     """
 
     left: LimbModel
@@ -49,17 +49,17 @@ class LegModel:
 
     @property
     def reference(self) -> Float[np.ndarray, " J"]:
-        """Joint angles that the left leg stands with [rad]."""
+        """Joint angles of the left leg in the reference configuration [rad]."""
         return self.left.reference
 
     @property
     def mirror_signs(self) -> Float[np.ndarray, " J"]:
-        """The left leg's angles times these are the right leg's in the mirrored posture."""
+        """Signs that turn the left leg's angles into the right leg's in the mirrored posture."""
         return self.left.chain.mirror_signs
 
     @property
     def com_in_foot(self) -> Polytope:
-        """Reach of the centre of mass from the left foot, in its frame turned by its yaw alone."""
+        """Reach of the centre of mass from the left foot, in its frame rotated only by its yaw."""
         return self.left.com_reach
 
     @property
@@ -117,7 +117,7 @@ def leg_angles(
         legs: pair of legs.
         sole: position of the sole in the root frame [m].
         rotation: orientation of the sole in the root frame.
-        start: a posture near each pose, where one is known [rad].
+        start: posture near each pose, if known [rad].
     """
     return legs.left.inverse(sole, rotation, start)
 
@@ -127,7 +127,7 @@ def mass_moment(
     frames: Float[np.ndarray, "*batch J 3 3"],
     origins: Float[np.ndarray, "*batch J 3"],
 ) -> Float[np.ndarray, "*batch 3"]:
-    """Return the sum of mass times centre over a leg's links, in the frame of both [kg m]."""
+    """Return the sum of mass times centre over a leg's links, in the inputs' frame [kg m]."""
     return legs.left.mass_moment(frames, origins)
 
 

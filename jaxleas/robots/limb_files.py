@@ -13,7 +13,7 @@ from jaxleas.types.quaternions import quaternion_of
 
 
 def limb_model_to_json(model: LimbModel) -> dict[str, Any]:
-    """Return a limb's model as JSON has it."""
+    """Return a limb's model as JSON values."""
     chain = model.chain
     turns = quaternion_of(chain.rotations)
     return {
@@ -53,10 +53,10 @@ def limb_model_to_json(model: LimbModel) -> dict[str, Any]:
 
 
 def limb_model_from_json(content: dict[str, Any]) -> LimbModel:
-    """Return the model that JSON holds.
+    """Return a limb's model from JSON values.
 
     Raises:
-        KeyError, TypeError, ValueError, InputError: it holds none.
+        KeyError, TypeError, ValueError, InputError: the values do not describe a model.
     """
     joints = content["joints"]
     chain = SerialChain(
@@ -94,12 +94,12 @@ def limb_model_from_json(content: dict[str, Any]) -> LimbModel:
 
 
 def pose_to_json(pose: Pose) -> dict[str, Any]:
-    """Return a pose as JSON has it."""
+    """Return a pose as JSON values."""
     return {"position": pose.position.tolist(), "quaternion": pose.quaternion.tolist()}
 
 
 def pose_from_json(content: dict[str, Any]) -> Pose:
-    """Return the pose that JSON holds."""
+    """Return a pose from JSON values."""
     return Pose(numbers(content["position"]), numbers(content["quaternion"]))
 
 
@@ -107,7 +107,7 @@ def numbers(value: Any) -> np.ndarray:
     """Return nested lists of numbers as an array.
 
     Raises:
-        ValueError: they hold something else, or are ragged.
+        ValueError: the lists hold something else, or are ragged.
     """
     return np.asarray(value, dtype=np.float64)
 

@@ -1,4 +1,4 @@
-"""How a limb moves and what it weighs: for planners that move its joints."""
+"""Kinematics and masses of limbs, for planners that move their joints."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -55,11 +55,11 @@ class LimbModel:
         reference: joint angles of the reference configuration [rad].
         link_mass: mass of each link [kg].
         link_com: centre of mass of each link in its frame [m].
-        boxes: shapes that must touch nothing; those of the last link are the effector's.
-        capsules: shapes that keep clear of the other limbs.
-        com_reach: where the centre of mass of the whole robot can be while the effector stands: in
-            the effector's frame turned by its yaw alone [m].
-        starts: postures that searches for an inverse start from [rad]; drawn where None is given.
+        boxes: boxes that must touch nothing; those of the last link are the effector's.
+        capsules: capsules that must not touch those of other limbs.
+        com_reach: reach of the centre of mass of the whole robot while the effector stands, in the
+            effector's frame rotated only by its yaw [m].
+        starts: postures from which searches for an inverse start [rad]; None to draw them.
 
     Raises:
         InputError: shapes disagree, or a mass is negative.
@@ -91,7 +91,7 @@ class LimbModel:
                 raise InputError(f"a limb of {count} joints has no link {each.link} (from 0)")
 
     def posture(self, angles: Float[np.ndarray, "*batch J"]) -> ChainPosture:
-        """Place the links in the root frame.
+        """Return the posture of the limb in the root frame.
 
         Args:
             angles: joint angles [rad].
@@ -106,17 +106,16 @@ class LimbModel:
     ) -> tuple[Float[np.ndarray, "*batch J"], Bool[np.ndarray, "*batch"]]:
         """Return joint angles that bring the effector to a pose.
 
-        In closed form for a leg with a spherical hip, by a search for other chains, which may miss
-        a solution; chains of fewer than six joints only bring it to the position.
+        The solution has a closed form for a leg with a spherical hip; for other chains a search
+        finds it, and may miss it; chains of fewer than six joints only reach the position.
 
         Args:
-            position: of the effector in the root frame [m].
+            position: position of the effector in the root frame [m].
             rotation: orientation of the effector in the root frame.
-            start: a posture near each pose, where one is known: the only one that a search then
-                starts from [rad].
+            start: posture near each pose, if known; a search then starts only from it [rad].
 
         Returns:
-            Angles [rad], and whether the pose is in reach within the joint limits.
+            The angles [rad], and whether the pose is in reach within the joint limits.
         """
         if self._spherical is not None:
             angles, in_reach = self._spherical.inverse(position, rotation)
@@ -144,7 +143,7 @@ class LimbModel:
         return (self.link_mass[:, None] * centres).sum(axis=-2)
 
     def mirrored(self) -> "LimbModel":
-        """Return the mirror image in the plane y = 0: the right limb of the left one."""
+        """Return the mirror image in the plane y = 0: the right limb from the left one."""
         return replace(
             self,
             chain=self.chain.mirrored(),
@@ -156,7 +155,7 @@ class LimbModel:
                 for each in self.capsules
             ),
             com_reach=self.com_reach.mirrored(),
-            # Limbs that are mirror images find mirror images.
+            # Limbs that are mirror images must find mirror images.
             starts=self._starts * self.chain.mirror_signs,
         )
 
@@ -171,10 +170,10 @@ class LimbModel:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """All of a robot that is no limb.
+    """The part of a robot that is not a limb.
 
     Attributes:
-        mass: mass [kg].
+        mass: mass of the body [kg].
         com: centre of mass in the root frame, joints in the reference configuration [m].
     """
 

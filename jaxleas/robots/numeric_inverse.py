@@ -1,4 +1,4 @@
-"""The inverse of any chain by damped Newton steps from a few starts, for many poses at once."""
+"""The inverse kinematics of any chain by damped Newton steps from a few starts, in batches."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -8,18 +8,18 @@ from jaxleas.robots.chain import SerialChain, chain_jacobian, chain_posture
 REACHED = 1e-9
 """A pose counts as reached within this distance [m] and angle [rad]."""
 STARTS = 512
-"""Postures among which each pose finds the ones it starts from."""
+"""Number of postures from which each pose takes its nearest starts."""
 _ATTEMPTS = 6
 _STEPS = 20
-_PATIENCE = 6  # steps after which a search must have halved its error, or is given up
-_DAMPING = 1e-3  # of the step, as a share of the remaining error
+_PATIENCE = 6  # steps in which a search must halve its error, or it ends
+_DAMPING = 1e-3  # damping of a step, as a share of the remaining error
 _LONGEST = 0.4  # a joint turns by no more than this in a step [rad]
 _ARM = 0.3  # a turn of one radian counts as much as this distance [m]
 _AT_ONCE = 4096
 
 
 def draw_starts(chain: SerialChain, reference: Float[np.ndarray, " J"]) -> Float[np.ndarray, "S J"]:
-    """Return the postures that searches start from: the reference, and a fixed draw."""
+    """Return the start postures of searches: the reference, and a fixed random sample."""
     drawn = np.random.default_rng(0).uniform(chain.lower, chain.upper, (STARTS, len(chain)))
     drawn[0] = reference
     return drawn
@@ -33,17 +33,17 @@ def numeric_inverse(
 ) -> tuple[Float[np.ndarray, "N J"], Bool[np.ndarray, " N"]]:
     """Return joint angles within the limits that bring the effector to poses.
 
-    What is found is a solution; that none is found is no proof that there is none.
+    An answer that is found is a solution; a failed search does not prove that none exists.
 
     Args:
         chain: chain of joints.
-        starts: postures to start from.
-        position: of the effector in the root frame [m].
-        rotation: orientation of the effector in the root frame; None where any will do.
+        starts: postures to start from [rad].
+        position: position of the effector in the root frame [m].
+        rotation: orientation of the effector in the root frame; None to accept any.
 
     Returns:
-        Angles [rad], and whether the pose is reached; angles of a pose that is not reached are the
-        last ones tried.
+        The angles [rad], and whether the pose is reached; angles of a pose that is not reached are
+        the last ones tried.
     """
     angles = np.empty((len(position), len(chain)))
     reached = np.zeros(len(position), dtype=bool)
@@ -59,7 +59,7 @@ def _search(
 ) -> tuple[np.ndarray, np.ndarray]:
     near = nearest_starts(chain, starts, position, rotation)
     angles, reached = starts[near[:, 0]].copy(), np.zeros(len(position), dtype=bool)
-    # No pose is in reach further from the first joint than the stretched chain is long.
+    # No pose is in reach at a distance from the first joint above the stretched chain's length.
     offsets = np.concatenate([chain.positions[1:], chain.tip.position[None]])
     length = float(np.linalg.norm(offsets, axis=1).sum())
     near_enough = np.linalg.norm(position - chain.positions[0], axis=1) <= length + REACHED
@@ -76,7 +76,7 @@ def _search(
 def nearest_starts(
     chain: SerialChain, starts: np.ndarray, position: np.ndarray, rotation: np.ndarray | None
 ) -> np.ndarray:
-    """Return, for each pose, the indices of the starts that come nearest to it, best first."""
+    """Return the indices of the starts nearest to each pose, best first."""
     posture = chain_posture(chain, starts)
     apart = position[:, None] - posture.tip
     cost = (apart * apart).sum(axis=2)
@@ -100,8 +100,8 @@ def newton_inverse(
     Args:
         chain: chain of joints.
         angles: posture that each search starts from [rad].
-        position: of the effector in the root frame [m].
-        rotation: orientation of the effector in the root frame; None where any will do.
+        position: position of the effector in the root frame [m].
+        rotation: orientation of the effector in the root frame; None to accept any.
     """
     angles, going = angles.copy(), np.arange(len(angles))
     reached = np.zeros(len(angles), dtype=bool)

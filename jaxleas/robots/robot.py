@@ -1,4 +1,4 @@
-"""What moves: a trunk, limbs with ranges of motion and effectors, and a few numbers."""
+"""Robots: a trunk, limbs with ranges of motion and effectors, and a few numbers."""
 
 import difflib
 from collections.abc import Mapping
@@ -17,19 +17,19 @@ from jaxleas.types.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Limb:
-    """One limb.
+    """A limb of a robot.
 
     Attributes:
-        name: "left" or "right" for the legs of bipeds.
-        range_of_motion: where the middle of its effector can be in contact, in the root frame with
-            the root upright [m].
-        effector: what it touches with; None stands for a foot of the robot's `foot_half_size` and
-            `friction`, which `Robot` then puts in its place.
+        name: name of the limb: "left" or "right" for the legs of bipeds.
+        range_of_motion: polytope of contact positions of the effector's middle, in the root frame
+            with the root upright [m].
+        effector: effector of the limb; None stands for a foot with the robot's `foot_half_size` and
+            `friction`, which `Robot` then inserts.
         reference: middle of the effector in the root frame, in the reference configuration [m];
             None stands for the middle of the range of motion, at the reference height below the
             root for a foot.
-        model: its joints, masses and shapes, for planners that move joints; None where the robot's
-            file has none.
+        model: joints, masses and shapes of the limb, for planners that move joints; None if the
+            robot's file has no model.
     """
 
     name: str
@@ -45,21 +45,21 @@ class Robot:
 
     Attributes:
         name: name by which `load_robot` finds it.
-        limbs: left before right.
+        limbs: limbs, left before right.
         trunk: boxes around the body without its limbs, in the root frame [m].
         root_height: height of the root above the ground in the reference configuration [m].
         walking_height: height of the root above the ground along guide paths [m].
         mass: mass of the whole robot [kg].
-        friction: friction coefficient mu of feet that state none of their own [1].
-        foot_half_size: half length and half width of the soles of feet that state none [m].
-        start_heights: lowest and highest start of an episode, above the walking height [m].
-        contact_window: how far ahead of the root, and to a side of it, the contacts of the next
-            stretch of a walk may lie: what a surrogate is shown of the terrain [m].
+        friction: friction coefficient mu of feet without their own [1].
+        foot_half_size: half length and half width of the soles of feet without their own [m].
+        start_heights: lowest and highest start of an episode, relative to the walking height [m].
+        contact_window: largest distance ahead of the root, and to a side of it, of the contacts of
+            the next stretch of a walk; a surrogate sees the terrain within it [m].
         steps: polytopes of steps, by name: "RF_in_LF" is where the right foot can be in the frame
-            of the left one, "COM_in_LF" where the centre of mass can be [m]; empty where the
+            of the left one, "COM_in_LF" where the centre of mass can be [m]; empty if the
             robot's file has none.
-        body: mass of all that is no limb, for planners that move joints; None where the robot's
-            file has none.
+            body: mass of the part that is not a limb, for planners that move joints; None if the
+            robot's file has no body.
 
     Raises:
         InputError: two limbs or two effectors share a name, or a number is out of range.
@@ -101,7 +101,7 @@ class Robot:
 
     @property
     def effectors(self) -> tuple[Effector, ...]:
-        """One effector a limb, in the order of the limbs."""
+        """One effector per limb, in the order of the limbs."""
         return tuple(limb.effector for limb in self.limbs if limb.effector is not None)
 
     @cached_property
@@ -129,7 +129,7 @@ class Robot:
         """Return the index of an effector.
 
         Raises:
-            InputError: the robot has none of that name.
+            InputError: the robot has no effector of that name.
         """
         names = [effector.name for effector in self.effectors]
         if name not in names:
@@ -144,7 +144,7 @@ class Robot:
         """Return an effector.
 
         Raises:
-            InputError: the robot has none of that name.
+            InputError: the robot has no effector of that name.
         """
         return self.effectors[self.effector_index(name)]
 

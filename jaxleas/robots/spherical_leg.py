@@ -1,4 +1,4 @@
-"""The inverse of a leg with a spherical hip and two ankle axes that meet, in closed form."""
+"""The inverse kinematics of a leg with a spherical hip and two ankle axes that meet."""
 
 from dataclasses import dataclass
 
@@ -8,15 +8,15 @@ from jaxtyping import Bool, Float
 from jaxleas.robots.chain import SerialChain
 
 _AXES = (2, 0, 1, 1, 1, 0)
-"""Hip yaw, hip roll, hip pitch, knee, ankle pitch, ankle roll: the axis of each."""
+"""Axes of hip yaw, hip roll, hip pitch, knee, ankle pitch and ankle roll."""
 
 
 @dataclass(frozen=True, eq=False)
 class SphericalLeg:
-    """Lengths of a leg whose three hip axes meet in one point, its two ankle axes in another.
+    """A leg whose three hip axes meet in one point, and its two ankle axes in another.
 
     Attributes:
-        hip: where the hip's axes meet, in the root frame [m].
+        hip: point where the hip's axes meet, in the root frame [m].
         thigh: length from hip to knee [m].
         shank: length from knee to ankle [m].
         sole: distance of the sole below the ankle [m].
@@ -29,7 +29,7 @@ class SphericalLeg:
 
     @classmethod
     def of(cls, chain: SerialChain) -> "SphericalLeg | None":
-        """Return the lengths of a chain; None if it is no such leg."""
+        """Return the leg of a chain; None if the chain is not such a leg."""
         straight = not any(chain.turned) and np.array_equal(chain.tip.rotation, np.eye(3))
         if chain.along != _AXES or not straight:
             return None
@@ -46,8 +46,8 @@ class SphericalLeg:
     ) -> tuple[Float[np.ndarray, "*batch 6"], Bool[np.ndarray, "*batch"]]:
         """Return the angles that bring the sole to a pose, the knee bent forwards.
 
-        The distance of hip and ankle gives the knee; the hip as the foot sees it gives the ankle's
-        two angles; what is then left of the rotation is the hip's (the textbook solution for a
+        The distance of hip and ankle gives the knee; the hip's position in the foot's frame gives
+        the ankle's two angles; the rest of the rotation is the hip's (the textbook solution for a
         spherical hip; Kajita et al. 2014, sec. 2.5).
 
         Args:
@@ -55,12 +55,12 @@ class SphericalLeg:
             rotation: orientation of the foot in the root frame.
 
         Returns:
-            Angles [rad], and whether the pose is in reach; angles of a pose out of reach are those
-            of the leg stretched towards it.
+            The angles [rad], and whether the pose is in reach; angles of a pose out of reach are
+            those of the leg stretched towards it.
         """
         ankle = sole + self.sole * rotation[..., :, 2]
         to_hip = self.hip - ankle
-        # The hip as seen by the foot.
+        # The hip in the foot's frame.
         seen = (to_hip[..., None, :] @ rotation)[..., 0, :]
         x, y, z = seen[..., 0], seen[..., 1], seen[..., 2]
         squared = x * x + y * y + z * z

@@ -1,4 +1,4 @@
-"""Talos, the humanoid of the LEAS thesis (Stasse 2017, PAL Robotics)."""
+"""Talos, the humanoid robot of the LEAS thesis (Stasse 2017, PAL Robotics)."""
 
 from jaxleas.robots.catalogue import load_robot
 from jaxleas.robots.robot import Robot

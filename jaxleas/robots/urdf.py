@@ -1,4 +1,4 @@
-"""Reading what a chain needs from a URDF: joints, axes, limits; without a library for robots."""
+"""Reading a chain's joints, axes and limits from a URDF, without a library for robots."""
 
 import math
 from dataclasses import dataclass
@@ -36,12 +36,12 @@ def read_chain(path: str | Path, root: str, link: str, frame: Pose | None = None
 
     Args:
         path: URDF file.
-        root: name of the link that the chain starts at.
+        root: name of the link where the chain starts.
         link: name of the link that carries the effector.
-        frame: pose of the effector in that link's frame; its origin if None.
+        frame: pose of the effector in that link's frame; None for the frame itself.
 
     Raises:
-        InputError: the file is no URDF, has no such chain, or moves it by another kind of joint.
+        InputError: the file is not a URDF, has no such chain, or moves it by another kind of joint.
     """
     by_child = {joint.child: joint for joint in _joints(path)}
     joints, at = [], link
@@ -135,7 +135,7 @@ def _three(element: ElementTree.Element | None, key: str, otherwise: tuple) -> n
 
 
 def rotation_of_rpy(roll: float, pitch: float, yaw: float) -> np.ndarray:
-    """Return Rz(yaw) Ry(pitch) Rx(roll), as URDF counts angles [rad]."""
+    """Return Rz(yaw) Ry(pitch) Rx(roll), as URDF defines these angles [rad]."""
     (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
     return np.array(
         [

@@ -1,4 +1,4 @@
-"""How far predicted probabilities can be trusted: measured on verdicts that nobody learned from."""
+"""Calibration: how well predicted probabilities match verdicts that were held out."""
 
 from dataclasses import dataclass
 
@@ -7,19 +7,19 @@ from jaxtyping import Bool, Float
 from scipy.optimize import minimize
 
 BINS = 10
-_SMALLEST = 1e-7  # a probability nearer to 0 or 1 than this counts as this
+_SMALLEST = 1e-7  # probabilities are kept this far from 0 and 1
 
 
 @dataclass(frozen=True)
 class Confusion:
-    """Verdicts against what was predicted, at one threshold.
+    """Numbers of verdicts by prediction, at one threshold.
 
     Attributes:
-        threshold: a failure is predicted where its probability is above.
-        failed_foreseen: the planner failed, as predicted.
-        failed_unforeseen: the planner failed, unpredicted.
-        passed_foreseen: the planner got through, as predicted.
-        passed_unforeseen: the planner got through where failure was predicted.
+        threshold: probability above which a failure is predicted.
+        failed_foreseen: number of failures of the planner that were predicted.
+        failed_unforeseen: number of failures of the planner that were not predicted.
+        passed_foreseen: number of successes of the planner that were predicted.
+        passed_unforeseen: number of successes of the planner where failure was predicted.
     """
 
     threshold: float
@@ -30,7 +30,7 @@ class Confusion:
 
     @property
     def balanced_accuracy(self) -> float:
-        """Mean of the shares of failures and of passes foreseen; NaN if there were none of one."""
+        """Mean of the shares of failures and of passes foreseen; NaN without failures or passes."""
         failed = self.failed_foreseen + self.failed_unforeseen
         passed = self.passed_foreseen + self.passed_unforeseen
         if not failed or not passed:
@@ -39,10 +39,10 @@ class Confusion:
 
 
 def platt(logit: Float[np.ndarray, " n"], failed: Bool[np.ndarray, " n"]) -> tuple[float, float]:
-    """Return scale and shift of the logit that make its probabilities most likely (Platt 1999).
+    """Return the scale and shift of the logit with the greatest likelihood (Platt 1999).
 
-    The targets are his: (n_failed + 1) / (n_failed + 2) and 1 / (n_passed + 2), so that a few
-    verdicts never make certainty.
+    The targets are Platt's: (n_failed + 1) / (n_failed + 2) and 1 / (n_passed + 2), so that a few
+    verdicts never give certainty.
     """
     count = int(np.sum(failed))
     target = np.where(failed, (count + 1.0) / (count + 2.0), 1.0 / (len(failed) - count + 2.0))
@@ -57,7 +57,7 @@ def platt(logit: Float[np.ndarray, " n"], failed: Bool[np.ndarray, " n"]) -> tup
 
     found = minimize(loss, np.array([1.0, 0.0]), jac=True, method="BFGS")
     scale, shift = found.x
-    # A scale below zero would turn the network's opinion round: it has none worth keeping.
+    # A scale below zero would reverse the network's order: then its logits are of no use.
     return (float(scale), float(shift)) if scale > 0.0 else (0.0, _logit(count / len(failed)))
 
 
@@ -89,7 +89,7 @@ def confusion(
 def calibration_curve(
     probability: Float[np.ndarray, " n"], failed: Bool[np.ndarray, " n"], bins: int = BINS
 ) -> Float[np.ndarray, "bins 3"]:
-    """Return mean predicted probability, share that failed and count, in bins of equal count."""
+    """Return mean predicted probability, share of failures and count, in bins of equal count."""
     order = np.argsort(probability, kind="stable")
     rows = [
         (np.mean(probability[part]), np.mean(failed[part]), len(part))
@@ -100,12 +100,12 @@ def calibration_curve(
 
 
 def expected_calibration_error(curve: Float[np.ndarray, "bins 3"]) -> float:
-    """Return the mean distance between predicted and found, weighted by count (Naeini 2015)."""
+    """Return the mean error of a curve's probabilities, weighted by count (Naeini 2015)."""
     return float(np.average(np.abs(curve[:, 0] - curve[:, 1]), weights=curve[:, 2]))
 
 
 def area_under_curve(probability: Float[np.ndarray, " n"], failed: Bool[np.ndarray, " n"]) -> float:
-    """Return the probability that a failure is ranked above a pass (Mann-Whitney); NaN if alone."""
+    """Return the probability that a failure is ranked above a pass (Mann-Whitney), or NaN."""
     from scipy.stats import rankdata
 
     count = int(np.sum(failed))

@@ -27,14 +27,14 @@ def fit(
     Args:
         labels: folders that `jaxleas label` wrote.
         out: surrogate file, .npz.
-        planner: that must have judged; any, if not given.
+        planner: planner whose verdicts are accepted; any planner by default.
         policy: run folder or policy whose environment the surrogate is for; by default the
             environment's defaults.
-        where: more folders to look for guide paths and scenes in.
+        where: additional folders with guide paths and scenes.
         epochs: passes over the guide paths.
         code: outputs of the network's encoder.
-        hidden: values that the network carries along.
-        seed: of the fit.
+        hidden: number of values that the network carries along.
+        seed: random seed of the fit.
     """
     from pydantic import ValidationError
 
@@ -83,7 +83,7 @@ def fit(
 
 
 def describe(report: dict[str, Any]) -> str:
-    """Return a surrogate's report as a few lines for a person."""
+    """Return a surrogate's report as a few lines of text."""
     guides, terrains = report["guides"], report["terrains"]
     lines = [
         f"learned from {guides['learned']} guide paths on {terrains['learned']} terrains,"

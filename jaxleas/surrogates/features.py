@@ -1,4 +1,4 @@
-"""What a surrogate is told at a kept configuration: local terrain, and motion since the last."""
+"""Inputs of a surrogate at a kept configuration: local terrain, and motion since the last one."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,19 +12,19 @@ MOTION_FEATURES = 7  # displacement, turn, velocity
 # The scales make features of a walk at the desired speed of order one.
 _SPEED = 0.1  # [m/s]
 _TIME_STEP = 0.2  # [s]
-_TURN = 0.07  # in one time step at the greatest turn rate [rad]
+_TURN = 0.07  # turn in one time step at the greatest turn rate [rad]
 
 
 def near_points(
     points_in_root: Float[np.ndarray, "P 2"], window: tuple[float, float]
 ) -> Int[np.ndarray, " points"]:
-    """Return the indices of the points of the local terrain that a surrogate is shown.
+    """Return the indices of the points of the local terrain that a surrogate sees.
 
-    What lies beyond the contacts of the next stretch teaches nothing.
+    The terrain beyond the contacts of the next stretch has no influence on the verdict.
 
     Args:
-        points_in_root: of the local terrain [m].
-        window: how far those contacts may lie ahead of the root, and to a side of it [m].
+        points_in_root: points of the local terrain in the root frame [m].
+        window: largest distance of those contacts ahead of the root, and to a side of it [m].
     """
     ahead, beside = points_in_root.T
     return np.flatnonzero((ahead < window[0]) & (np.abs(beside) < window[1]))
@@ -41,10 +41,10 @@ def walk_features(
 
     Args:
         heights_in_root: local terrain relative to the root, near it [m].
-        motion: of the root now.
-        last: motion at the kept configuration before; at the first, the same.
-        keep_every: time steps from one kept configuration to the next.
-        height_range: between which heights are clipped [m].
+        motion: current root motion.
+        last: root motion at the previous kept configuration; at the first one, the current motion.
+        keep_every: number of time steps from one kept configuration to the next.
+        height_range: lowest and highest height, to which heights are clipped [m].
     """
     low, high = height_range
     heights = jnp.clip(heights_in_root, low, high)
@@ -66,10 +66,10 @@ def walk_features(
 def mirrored(
     points_in_root: Float[np.ndarray, "points 2"],
 ) -> tuple[Int[np.ndarray, " size"], Float[np.ndarray, " size"]]:
-    """Return permutation and sign that make a walk's features those of its mirror image.
+    """Return the permutation and signs that turn features into those of the mirror image.
 
     Args:
-        points_in_root: of the local terrain [m]; the set is symmetric in y = 0.
+        points_in_root: points of the local terrain in the root frame, symmetric in y = 0 [m].
     """
     image = points_in_root * np.array([1.0, -1.0])
     distance = np.linalg.norm(image[:, None] - points_in_root[None], axis=-1)

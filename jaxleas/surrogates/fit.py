@@ -21,14 +21,14 @@ from jaxleas.surrogates.walks import LabelledWalks
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.types import InputError, RootMotion
 
-LEAST_FAILURES = 20  # on the terrain that is learned from
+LEAST_FAILURES = 20  # on the terrains used for learning
 LEAST_TERRAINS = 4
-_CHUNK = 512  # walks whose hazards are computed at once
+_CHUNK = 512  # walks per computation of hazards
 
 
 @dataclass(frozen=True)
 class Split:
-    """Walks by the terrain they are on."""
+    """Walks for learning, calibration and judgement, each on their own terrains."""
 
     learned: LabelledWalks
     calibration: LabelledWalks
@@ -36,10 +36,10 @@ class Split:
 
 
 def split_by_terrain(walks: LabelledWalks, share: float, seed: int) -> Split:
-    """Hold out terrains: nothing seen in learning is seen again in calibration or judgement.
+    """Split walks by terrain: no terrain of learning is in calibration or judgement.
 
     Raises:
-        InputError: there are too few terrains or verdicts of one class.
+        InputError: there are too few terrains, or too few verdicts of one class.
     """
     maps = np.unique(walks.map_index)
     if len(maps) < LEAST_TERRAINS:
@@ -75,20 +75,20 @@ def fit(
 ) -> Surrogate:
     """Fit a surrogate to labelled walks.
 
-    Each kept configuration that the planner got to counts as passed, the one where it failed as
-    failed, those after it not at all: the likelihood of a walk with a hazard (discrete survival
-    analysis). Failures are rare, and are not weighted: that would spoil the probabilities.
+    Each kept configuration that the planner reached counts as passed, the one where it failed as
+    failed, and those after it not at all: the likelihood of a walk with a hazard (discrete survival
+    analysis). Failures are rare, but are not weighted: that would distort the probabilities.
 
     Args:
-        walks: with verdicts.
+        walks: labelled walks.
         atlas: terrains of the walks.
-        env: whose local terrain the surrogate will be shown.
-        identity: whose stand-in it is.
-        settings: of the fit.
-        progress: told epoch and loss after each epoch.
+        env: environment that gives the surrogate its local terrain.
+        identity: planner, robot and observation that the surrogate is for.
+        settings: settings of the fit.
+        progress: function called after each epoch with the epoch and its loss.
 
     Raises:
-        InputError: too few terrains, or too few verdicts of one class.
+        InputError: there are too few terrains, or too few verdicts of one class.
     """
     split = split_by_terrain(walks, settings.held_out, settings.seed)
     hazards = _Hazards(env, identity)
@@ -141,7 +141,7 @@ def foreseen_failure(
 
 
 class _Hazards:
-    """The network along walks: logits of the hazard at every kept configuration."""
+    """The network's logits of the hazard at every kept configuration of walks."""
 
     def __init__(self, env: SteeringEnv, identity: Identity):
         self.identity = identity
@@ -191,7 +191,7 @@ class _Hazards:
 
 
 def arrays_of(walks: LabelledWalks) -> dict[str, Array]:
-    """Return what the network needs of some walks, as device arrays."""
+    """Return the network's inputs of walks as device arrays."""
     names = ("position", "yaw", "velocity", "map_index", "is_known", "failed")
     return {name: jnp.asarray(getattr(walks, name)) for name in names}
 

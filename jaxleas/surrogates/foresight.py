@@ -1,9 +1,9 @@
 """A surrogate as a foresight: it ends an episode where its contact planner would fail.
 
 In the thesis a guide path's tail is cut where the planner failed (T 4.2.2, Fig. 4.6), which is an
-episode that terminates there. The surrogate knows a probability; the episode terminates where the
-probability of having come so far falls below a level drawn once for the walk. That is inverse
-transform sampling of the planner's verdict: as often, and in the same places, as it would fail.
+episode that terminates there. The surrogate predicts a probability; the episode terminates where
+the probability of having come this far falls below a level drawn once for the walk. That is inverse
+transform sampling of the planner's verdict: it fails as often, and in the same places.
 """
 
 import jax
@@ -21,14 +21,14 @@ from jaxleas.types import InputError, RootMotion
 
 @struct.dataclass
 class Memory:
-    """What is remembered of a walk.
+    """The state of a walk that the foresight carries along.
 
     Attributes:
-        hidden: the network's.
-        last: motion at the last kept configuration.
-        since: time steps since then.
-        survival: probability that the planner got so far.
-        level: below which the walk is over.
+        hidden: hidden state of the network.
+        last: root motion at the last kept configuration.
+        since: number of time steps since then.
+        survival: probability that the planner got this far.
+        level: level of the survival below which the walk ends.
     """
 
     hidden: Float[Array, "*batch hidden"]
@@ -39,23 +39,23 @@ class Memory:
 
 
 class SurrogateForesight:
-    """A `Foresight` out of a surrogate.
+    """A `Foresight` made from a surrogate.
 
-    Margins are differences of probability: that of having come so far, less the walk's level.
+    Margins are differences of probability: that of having come this far, minus the walk's level.
     """
 
     def __init__(self, surrogate: Surrogate, threshold: float = 0.0, queue: bool = False):
-        """Prepare the judge.
+        """Prepare the foresight.
 
         Args:
-            surrogate: that judges.
-            threshold: the risk dial: levels are drawn in [threshold, 1]. 0 fails as often as the
-                planner would; with 0.9 a walk that has come so far with less than 90 % never goes
-                on, and policies learn to be careful beyond what the planner asks.
-            queue: for training with many robots: at each step only as many are judged as are due on
-                average, and some more; the others wait for the next step. Where all are due at
-                once, as at the beginning of a training, some wait for a few steps, after which
-                their times to be judged are apart.
+            surrogate: surrogate that judges.
+            threshold: accepted risk: levels are drawn in [threshold, 1]. 0 fails as often as the
+                planner would; with 0.9 a walk that has come this far with a probability below 90 %
+                never continues, and policies learn to be more careful than the planner requires.
+            queue: whether robots queue to be judged, for training with many of them: each step
+                judges a little more than the average number of robots that are due; the others wait
+                for the next step. Where all are due at once, as at the start of training, some wait
+                for a few steps, after which they are due at different times.
 
         Raises:
             InputError: the threshold is outside [0, 1).
@@ -72,7 +72,7 @@ class SurrogateForesight:
         motion: RootMotion,
         chance: Float[Array, "*batch"],
     ) -> tuple[Float[Array, "*batch"], Memory]:
-        """Judge the first configuration: can the robot stand here at all?"""
+        """Judge the first configuration: whether the robot can stand there at all."""
         batch = motion.yaw.shape
         hidden = self.surrogate.begin(batch)
         near = self.surrogate.identity.near

@@ -1,6 +1,6 @@
-"""Label folders as `jaxleas label` leaves them, read back with their guide paths and scenes.
+"""Label folders that `jaxleas label` wrote, read with their guide paths and scenes.
 
-Files are the border: this room reads them and never asks a planner.
+The files are the interface: this room reads them and never calls a planner.
 """
 
 import hashlib
@@ -26,16 +26,17 @@ VERSION = 2  # of verdict files
 
 @dataclass(frozen=True)
 class Labels:
-    """What was read of some label folders.
+    """The contents of label folders.
 
     Attributes:
-        planner: that judged.
-        parameters: it was given.
-        robot: name of the robot whose contacts it planned.
+        planner: name of the planner that judged.
+        parameters: parameters of the planner.
+        robot: name of the robot whose contacts were planned.
         robot_digest: SHA-256 of that robot's file; None where the labels do not say.
-        walks: with verdicts.
-        atlas: their terrains.
-        passed_over: guide paths without a verdict: the planner's time limit came first.
+        walks: labelled walks.
+        atlas: terrains of the walks.
+        passed_over: number of guide paths without a verdict, because the planner's time limit came
+            first.
     """
 
     planner: str
@@ -53,11 +54,11 @@ def read_labels(
     """Read label folders; each file is checked against the fingerprint its verdicts came from.
 
     Args:
-        folders: written by `jaxleas label`.
-        where: folders in which guide path and scene files are looked for, beside the label
-            folders themselves and their parents.
-        resolution: of the height maps made of the scenes [m].
-        most_kept: kept configurations of a guide path; longer ones are cut.
+        folders: label folders that `jaxleas label` wrote.
+        where: additional folders with guide path and scene files; the label folders and their
+            parents are always searched.
+        resolution: resolution of the height maps made from the scenes [m].
+        most_kept: maximum number of kept configurations of a guide path; longer ones are cut.
 
     Raises:
         InputError: a folder has no verdicts, verdicts are of different planners or parameters, or a
@@ -117,7 +118,7 @@ def read_labels(
 
 
 class _File(BaseModel):
-    """What of a file's name and fingerprint is looked at."""
+    """The name and fingerprint of a file."""
 
     file: str
     sha256: str
@@ -172,14 +173,14 @@ def _robot(provenance: dict[str, Any]) -> tuple[str, str | None]:
 def _read(path: Path) -> dict[str, Any]:
     content = read_json(path)
     if not isinstance(content, dict):
-        raise InputError(f"{path} is no verdict file: it needs an object")
+        raise InputError(f"{path} is not a verdict file: it needs an object")
     require_version(content, VERSION, path)
-    typed(_VerdictFile, content, f"{path} is no verdict file")
+    typed(_VerdictFile, content, f"{path} is not a verdict file")
     return content
 
 
 def _require_paths(content: dict[str, Any], paths: Sequence[GuidePath], path: Path) -> None:
-    """Refuse verdicts on guide paths, or on configurations, that there are not."""
+    """Refuse verdicts on guide paths or configurations that do not exist."""
     for each in content["verdicts"]:
         number, last = each["path"], each["last_index"]
         if number >= len(paths) or last >= len(paths[number]):
@@ -190,14 +191,14 @@ def _require_paths(content: dict[str, Any], paths: Sequence[GuidePath], path: Pa
 
 
 class _Finder:
-    """Finds files by name and fingerprint."""
+    """A search for files by name and fingerprint."""
 
     def __init__(self, places: Sequence[Path]):
         self.places = places
         self.found: dict[str, Path] = {}
 
     def find(self, named: dict[str, str]) -> Path:
-        """Return the file of that name whose content is what the verdicts were made from."""
+        """Return the file with the name and content that the verdicts were made from."""
         fingerprint, name = named["sha256"], Path(named["file"]).name  # never out of its folder
         if fingerprint in self.found:
             return self.found[fingerprint]

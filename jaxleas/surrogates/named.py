@@ -1,4 +1,4 @@
-"""A surrogate as a configuration names it: `{surrogate: FILE}` among its conditions."""
+"""Surrogates named in a configuration: `{surrogate: FILE}` among its conditions."""
 
 from jaxleas.conditions.named import SurrogateSettings
 from jaxleas.envs.steering.config import SteeringConfig
@@ -12,11 +12,11 @@ def foresight_of(settings: SurrogateSettings, env: SteeringConfig) -> SurrogateF
 
     Args:
         settings: file and threshold of the surrogate.
-        env: configuration of the environment that it must fit.
+        env: configuration of the environment that the surrogate must fit.
 
     Raises:
-        InputError: the file is missing, has changed, is no surrogate, or stands in for another
-            robot or observation.
+        InputError: the file is missing, has changed, is not a surrogate, or is for another robot or
+            observation.
     """
     surrogate = read_surrogate(settings.surrogate)
     require_digest(settings.surrogate, settings.sha256)

@@ -1,7 +1,7 @@
-"""The surrogate's network: one recurrent step a kept configuration, out comes a hazard.
+"""The surrogate's network: one recurrent step per kept configuration gives a hazard.
 
-A gated recurrent unit (Cho et al. 2014): what it carries from step to step stands for the stance
-that the contact planner would have.
+A gated recurrent unit (Cho et al. 2014): its hidden state represents the stance that the contact
+planner would have.
 """
 
 import jax
@@ -13,17 +13,17 @@ from jaxtyping import Float, Key
 
 @struct.dataclass
 class Weights:
-    """Of encoder, recurrent unit and head.
+    """The weights of encoder, recurrent unit and head.
 
     Attributes:
-        encoder: from features to code.
-        encoder_bias: likewise.
-        gates: from code and hidden state to reset and update gate.
-        gates_bias: likewise.
-        candidate: from code and the hidden state let through to the candidate.
-        candidate_bias: likewise.
-        head: from hidden state to the hazard's logit.
-        head_bias: likewise.
+        encoder: matrix from features to code.
+        encoder_bias: bias of the code.
+        gates: matrix from code and hidden state to the reset and update gates.
+        gates_bias: bias of the gates.
+        candidate: matrix from code and reset hidden state to the candidate.
+        candidate_bias: bias of the candidate.
+        head: matrix from hidden state to the hazard's logit.
+        head_bias: bias of the hazard's logit.
     """
 
     encoder: Float[Array, "size code"]
@@ -45,10 +45,10 @@ def initial_weights(key: Key[Array, ""], size: int, code: int, hidden: int) -> W
     """Return random weights, each layer's scaled by its number of inputs.
 
     Args:
-        key: consumed here.
+        key: random key, consumed here.
         size: number of features.
-        code: of the encoder's outputs.
-        hidden: of values carried from step to step.
+        code: number of outputs of the encoder.
+        hidden: number of values carried from step to step.
     """
     encoder_key, gates_key, candidate_key = jax.random.split(key, 3)
 
@@ -63,7 +63,7 @@ def initial_weights(key: Key[Array, ""], size: int, code: int, hidden: int) -> W
         candidate=kernel(candidate_key, code + hidden, hidden),
         candidate_bias=jnp.zeros(hidden),
         head=jnp.zeros(hidden),
-        head_bias=jnp.float32(-5.0),  # at first every stretch is thought to go well
+        head_bias=jnp.float32(-5.0),  # at first every stretch is predicted to pass
     )
 
 

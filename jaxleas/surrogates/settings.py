@@ -1,4 +1,4 @@
-"""How a surrogate is fitted: the one place of these settings and their defaults."""
+"""Settings of a fit: the only place of these settings and their defaults."""
 
 from typing import Annotated
 
@@ -8,21 +8,21 @@ from jaxleas.configuration.strict import Strict
 
 
 class FitSettings(Strict):
-    """How a surrogate is fitted."""
+    """Settings of the fit of a surrogate."""
 
     code: Annotated[int, Field(ge=1)] = 24
-    """Outputs of the encoder."""
+    """Number of outputs of the encoder."""
     hidden: Annotated[int, Field(ge=1)] = 16
-    """Values that are carried from one kept configuration to the next."""
+    """Number of values that are carried from one kept configuration to the next."""
     epochs: Annotated[int, Field(ge=1)] = 12
-    """Passes over the walks."""
+    """Number of passes over the walks."""
     minibatch: Annotated[int, Field(ge=1)] = 128
     """Walks per gradient step."""
     learning_rate: Annotated[float, Field(gt=0.0)] = 3e-3
-    """At the start; it falls to nothing along a cosine."""
+    """Learning rate at the start; it falls to zero along a cosine."""
     weight_decay: Annotated[float, Field(ge=0.0)] = 0.03
     mirror: bool = True
     """Learn from each walk's mirror image as often as from the walk itself."""
     held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.25
-    """Share of the terrains that is not learned from: half of it calibrates, half judges."""
+    """Share of the terrains held out from learning: half of it calibrates, half judges."""
     seed: Annotated[int, Field(ge=0)] = 0

@@ -1,4 +1,4 @@
-"""A fitted surrogate: a contact planner's learned stand-in, and exactly which planner's."""
+"""A fitted surrogate: a contact planner's learned stand-in, with the planner's identity."""
 
 from functools import cache
 from typing import Any, Self
@@ -20,27 +20,27 @@ from jaxleas.surrogates.network import Weights, recur
 
 
 class Identity(Strict):
-    """Whose stand-in a surrogate is, and for which robot and observation."""
+    """The planner that a surrogate stands in for, with its robot and observation."""
 
     planner: str
     """name of the planner, or MODULE:CLASS of the user's own"""
     parameters: dict[str, JsonValue]
-    """of the planner"""
+    """parameters of the planner"""
     robot: str
     observation: str
-    """layout of the local terrain"""
+    """name of the observation layout"""
     height_low: float
-    """heights are clipped from below here [m]"""
+    """lower bound to which heights are clipped [m]"""
     height_high: float
-    """and from above here [m]"""
+    """upper bound to which heights are clipped [m]"""
 
     @classmethod
     def of(cls, planner: str, parameters: dict[str, JsonValue], env: SteeringConfig) -> Self:
-        """Return whose stand-in a surrogate of a planner is in an environment.
+        """Return the identity of a surrogate of a planner in an environment.
 
         Args:
-            planner: its name.
-            parameters: of the planner, all of them.
+            planner: name of the planner.
+            parameters: all parameters of the planner.
             env: configuration of the environment.
         """
         return cls(
@@ -54,18 +54,18 @@ class Identity(Strict):
 
     @property
     def keep_every(self) -> int:
-        """Time steps from one configuration that the planner is asked about to the next."""
+        """Number of time steps between two configurations that the planner is asked about."""
         return int(self.parameters["keep_every"])  # type: ignore[arg-type]
 
     @property
     def near(self) -> Int[np.ndarray, " points"]:
-        """Indices of the points that the surrogate is shown among all of the local terrain."""
+        """Indices of the points of the local terrain that the surrogate sees."""
         points = _points_in_root(self.robot, self.observation)
         return near_points(points, load_robot(self.robot).contact_window)
 
     @property
     def inputs(self) -> int:
-        """Number of features that the network is shown."""
+        """Number of features of the network."""
         return len(self.near) + MOTION_FEATURES
 
 
@@ -80,11 +80,11 @@ class Surrogate:
     """A network, its calibration and its identity.
 
     Attributes:
-        weights: of the network.
-        scale: of the logit, from calibration (Platt 1999).
-        shift: likewise.
-        identity: whose stand-in this is.
-        report: what fitting measured, as plain JSON values.
+        weights: weights of the network.
+        scale: factor of the logit, from calibration (Platt 1999).
+        shift: offset of the scaled logit, from calibration.
+        identity: planner, robot and observation that the surrogate is for.
+        report: results of the fit, as plain JSON values.
     """
 
     weights: Weights
@@ -102,7 +102,8 @@ class Surrogate:
     ) -> tuple[Float[Array, "*batch hidden"], Float[Array, "*batch"]]:
         """Return the next hidden state and the probability that the planner fails just here.
 
-        "Here" is from the kept configuration before to this one, given that it got that far.
+        "Here" is the stretch from the previous kept configuration to this one, given that the
+        planner got to its start.
         """
         hidden, logit = recur(self.weights, hidden, features)
         return hidden, jax.nn.sigmoid(self.scale * logit + self.shift)

@@ -1,4 +1,4 @@
-"""Surrogates as files: plain arrays and one JSON text, like policies (docs/files.md)."""
+"""Files of surrogates: plain arrays and one JSON text, like policies (docs/files.md)."""
 
 import json
 from dataclasses import fields
@@ -21,7 +21,7 @@ _WEIGHTS = tuple(field.name for field in fields(Weights))  # type: ignore[arg-ty
 
 
 def write_surrogate(path: str | Path, surrogate: Surrogate) -> None:
-    """Write a surrogate, whole or not at all."""
+    """Write a surrogate's file, whole or not at all."""
     metadata = {
         "format": FORMAT,
         "identity": surrogate.identity.model_dump(mode="json"),
@@ -37,10 +37,10 @@ def write_surrogate(path: str | Path, surrogate: Surrogate) -> None:
 
 
 def read_surrogate(path: str | Path) -> Surrogate:
-    """Read a surrogate.
+    """Read a surrogate's file.
 
     Raises:
-        InputError: the file is not a surrogate, is damaged, or is of another format.
+        InputError: the file is not a surrogate, is damaged, or has another format.
     """
     required = ("metadata", "scale", "shift", *_WEIGHTS)
     arrays = read_npz(path, required, max_bytes=MAX_BYTES)
@@ -80,17 +80,17 @@ def require_fit(
     parameters: dict[str, Any] | None = None,
     where: str = "the surrogate",
 ) -> None:
-    """Refuse a surrogate that stands in for something else than what is asked for.
+    """Refuse a surrogate that does not fit an environment or a planner.
 
     Args:
-        surrogate: in question.
-        env: of the environment it is to judge in.
-        planner: wanted, if any will not do.
-        parameters: of the planner, likewise.
-        where: how the error calls it.
+        surrogate: surrogate to check.
+        env: configuration of the environment in which the surrogate will judge.
+        planner: required planner; None accepts any.
+        parameters: required parameters of the planner; None accepts any.
+        where: name of the surrogate in messages.
 
     Raises:
-        InputError: says what differs.
+        InputError: the surrogate does not fit; the message says what differs.
     """
     identity = surrogate.identity
     wanted: dict[str, Any] = {
@@ -121,7 +121,7 @@ def require_fit(
 
 
 def _check(path: str | Path, arrays: dict[str, np.ndarray], identity: Identity) -> None:
-    """Refuse arrays that are no network for this identity."""
+    """Refuse arrays that do not make a network for an identity."""
     code, hidden = arrays["encoder_bias"].size, arrays["head"].size
     expected = {
         "scale": (),
@@ -143,4 +143,6 @@ def _check(path: str | Path, arrays: dict[str, np.ndarray], identity: Identity) 
                 f" {identity.observation}"
             )
         if not np.issubdtype(array.dtype, np.floating) or not np.isfinite(array).all():
-            raise InputError(f"{path}: {name} holds what is no finite number of floating point")
+            raise InputError(
+                f"{path}: {name} holds values that are not finite floating-point numbers"
+            )

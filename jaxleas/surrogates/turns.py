@@ -1,7 +1,8 @@
-"""Whose turn it is to be judged: of many robots few are due at a step, and only those cost.
+"""The turns of robots to be judged: of many robots few are due at a step, and only those cost time.
 
-Robots stand in groups, and each group serves its own: nothing passes between devices that share the
-robots, and no group is so large that finding who is due costs more than judging them.
+Robots are in groups, and each group serves its own robots: nothing passes between devices that
+share the robots, and no group is so large that finding the robots that are due costs more than
+judging them.
 """
 
 import math
@@ -15,18 +16,18 @@ from jaxtyping import Bool
 from jaxleas.conditions import Pick, everyone
 
 GROUP = 128
-SPARE = 2.0  # standard deviations of the number due that there is room for beside its mean
+SPARE = 2.0  # room above the mean number of robots due, in standard deviations of that number
 
 
 @dataclass(frozen=True)
 class Turn:
-    """Who is judged at a step.
+    """The robots that are judged at a step.
 
     Attributes:
-        pick: takes them out of an array with one entry a robot.
-        give_back: makes of an array with one entry for each picked one with one for each robot;
-            where a robot is not served it means nothing.
-        served: who is judged.
+        pick: function that takes them out of an array with one entry per robot.
+        give_back: function that turns an array with one entry per picked robot into one with one
+            entry per robot, which has no meaning for robots that are not served.
+        served: whether each robot is judged.
     """
 
     pick: Pick
@@ -35,16 +36,16 @@ class Turn:
 
 
 def all_at_once(due: Bool[Array, "*batch"]) -> Turn:
-    """Return the turn in which everybody is looked at, and who is due is served."""
+    """Return the turn that picks all robots, and serves those that are due."""
     return Turn(everyone, everyone, due)
 
 
 def in_turn(due: Bool[Array, "*batch"], every: int) -> Turn:
-    """Return the turn that has room for as many as are due on average, and some more.
+    """Return a turn with room for a little more than the average number of robots due.
 
     Args:
-        due: who waits for it.
-        every: steps from one turn of a robot to its next.
+        due: whether each robot waits for its turn.
+        every: number of steps from one turn of a robot to its next.
     """
     count = due.shape[0] if due.ndim == 1 else 0
     room = math.ceil(GROUP / every + SPARE * math.sqrt(GROUP / every * (1.0 - 1.0 / every)))
@@ -57,11 +58,11 @@ def in_turn(due: Bool[Array, "*batch"], every: int) -> Turn:
     def across(index: Array, leaf: Array) -> Array:
         return index.reshape(index.shape + (1,) * (leaf.ndim - 2))
 
-    place = jnp.cumsum(grouped(due).astype(jnp.int32), axis=1)  # 1 for the first who is due
-    # The robot in each place: as many stand before it as have not come so far.
+    place = jnp.cumsum(grouped(due).astype(jnp.int32), axis=1)  # 1 for the first robot that is due
+    # The robot in each place: its index is the number of robots with a smaller place.
     wanted = jnp.arange(1, room + 1)[None, :, None]
     robot = jnp.sum((place[:, None] < wanted).astype(jnp.int32), axis=2)
-    robot = jnp.minimum(robot, GROUP - 1)  # in a place that nobody has: somebody, in vain
+    robot = jnp.minimum(robot, GROUP - 1)  # any robot in an empty place; its result is not used
     seat = jnp.clip(place - 1, 0, room - 1)
 
     def pick(leaf: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What a fitted surrogate is worth on terrain it never saw: by stretch, and by guide path."""
+"""The quality of a fitted surrogate on terrain it never saw: by stretch, and by guide path."""
 
 from dataclasses import asdict
 from typing import Any
@@ -21,9 +21,9 @@ Scored = tuple[np.ndarray, LabelledWalks]  # calibrated logits of the hazard, an
 def report_on(calibration: Scored, judged: Scored, learned: LabelledWalks) -> dict[str, Any]:
     """Return the report as plain JSON values.
 
-    A *stretch* leads from one kept configuration to the next. A guide path is foreseen to fail with
-    the probability that it fails in any of its stretches. Thresholds are chosen on the terrains
-    that calibrate; everything is counted on those that judge.
+    A *stretch* leads from one kept configuration to the next. The predicted probability that a
+    guide path fails is that of a failure in any of its stretches. Thresholds are chosen on the
+    calibration terrains; everything is counted on the terrains for judgement.
     """
     return {
         "guides": {"learned": len(learned), "calibration": len(calibration[1])},

@@ -1,4 +1,4 @@
-"""Labelled walks: guide paths with an exact planner's verdicts, as arrays to fit a surrogate to."""
+"""Labelled walks: guide paths with an exact planner's verdicts, as arrays for a surrogate's fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,16 +14,16 @@ class LabelledWalks:
     """N walks at the configurations that the planner was asked about, at most K of each.
 
     The planner gets from kept configuration to kept configuration until it fails at `failed_at`;
-    of what would have come after nothing is known.
+    nothing is known about the configurations after that.
 
     Attributes:
-        position: of the root in the world [m].
+        position: position of the root in the world [m].
         yaw: heading [rad].
-        velocity: of the root in the world [m/s].
+        velocity: velocity of the root in the world [m/s].
         map_index: terrain of each walk.
         kept: number of kept configurations.
-        known: of those, how many the verdict is known of.
-        failed_at: the kept configuration that the planner did not reach; -1 if it reached all.
+        known: number of kept configurations with a known verdict.
+        failed_at: kept configuration that the planner did not reach; -1 if it reached all.
     """
 
     position: Float[np.ndarray, "N K 3"]
@@ -53,7 +53,7 @@ class LabelledWalks:
         return LabelledWalks(**{name: getattr(self, name)[rows] for name in _FIELDS})
 
     def trimmed(self) -> "LabelledWalks":
-        """Return the same without the columns that no walk is long enough for."""
+        """Return the same walks without the columns that no walk reaches."""
         most = int(self.kept.max())
         cut = {name: getattr(self, name)[:, :most] for name in ("position", "yaw", "velocity")}
         return replace(self, **cut)
@@ -69,14 +69,15 @@ def label_walks(
     keep_every: int,
     most_kept: int,
 ) -> LabelledWalks:
-    """Bring guide paths and verdicts into arrays.
+    """Turn guide paths and verdicts into arrays.
 
     Args:
-        paths: guide paths.
-        last_index: of the last configuration that the planner reached on each; -1 for none.
-        map_index: terrain of each.
-        keep_every: the planner was asked about one configuration in so many.
-        most_kept: K; longer walks are cut.
+        paths: guide paths to turn into walks.
+        last_index: index of the last configuration that the planner reached on each guide path; -1
+            for none.
+        map_index: terrain of each guide path.
+        keep_every: distance, in configurations, between two that the planner was asked about.
+        most_kept: maximum number K of kept configurations; longer walks are cut.
 
     Raises:
         InputError: there is no path, or the numbers do not belong together.
@@ -117,7 +118,7 @@ def label_walks(
 
 
 def join(parts: Sequence[LabelledWalks]) -> LabelledWalks:
-    """Return walks of several sets as one; their terrains must be numbered in one atlas."""
+    """Return several sets of walks as one; their terrains must be numbered in one atlas."""
     return LabelledWalks(
         **{name: np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS}
     )

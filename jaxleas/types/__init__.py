@@ -1,7 +1,7 @@
-"""Values that cross rooms. This room imports nothing of ours.
+"""Values that cross rooms. This room imports no other room.
 
-`RootMotion` is a pytree, and comes only when it is asked for: what reads files and draws them loads
-no JAX.
+`RootMotion` is a pytree, and is imported only on access, so that code that reads and draws files
+does not load JAX.
 """
 
 from typing import TYPE_CHECKING, Any

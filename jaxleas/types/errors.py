@@ -1,9 +1,9 @@
-"""The package's exceptions: each message is one sentence a person can act on."""
+"""The package's exceptions: each message is one sentence that tells the user what to do."""
 
 
 class JaxleasError(Exception):
-    """A failure that its reader can mend; the command line prints it alone and exits with 2."""
+    """A failure that the user can fix; the command line prints its message and exits with 2."""
 
 
 class InputError(JaxleasError):
-    """What was given cannot be used: the message says what, where, and what would do."""
+    """An unusable input: the message says what is wrong, where, and what would be right."""

@@ -1,8 +1,8 @@
 """The one code for "no ground".
 
 On the device it is the finite `NO_GROUND`, so that no NaN can enter the training arithmetic. A
-height map on the host is what its file holds, NaN where there is no ground; `terrain.make_atlas`
-is the only place that turns the one into the other.
+height map on the host has the values of its file, NaN where there is no ground;
+`terrain.make_atlas` is the only place that converts one into the other.
 """
 
 from typing import Any
@@ -17,7 +17,7 @@ NO_GROUND_IN_ROOT = 0.01 * NO_GROUND
 
 
 def is_ground(height: Any) -> Any:
-    """Tell where there is ground.
+    """Return where there is ground.
 
     Args:
         height: terrain heights in the world [m], NumPy or JAX, from a height map or an atlas.

@@ -1,4 +1,4 @@
-"""The nodes of an ONNX graph, written down in the order in which they compute."""
+"""The nodes of an ONNX graph, in the order of computation."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,8 @@ class OnnxNodes:
     """Nodes and constants of a graph; each method returns the name of its result.
 
     Attributes:
-        nodes: operators so far, each after those whose results it takes.
-        constants: values inside the graph.
+        nodes: operators added so far, each after those whose results it takes.
+        constants: constants of the graph.
     """
 
     def __init__(self) -> None:
@@ -24,8 +24,8 @@ class OnnxNodes:
         """Add a constant.
 
         Args:
-            value: a number or an array.
-            kind: type of its elements.
+            value: number or array.
+            kind: type of the elements.
         """
         import onnx
 
@@ -38,8 +38,8 @@ class OnnxNodes:
 
         Args:
             operator: name of the ONNX operator.
-            inputs: names of what it takes.
-            output: name of its result; by default a new one.
+            inputs: names of the operator's inputs.
+            output: name of the result; by default a new name.
             attributes: attributes of the operator.
         """
         import onnx

@@ -29,11 +29,11 @@ class GuidePath:
     """A guide path of one query, as plain NumPy values.
 
     Attributes:
-        time: since the start [s].
-        position: of the root in the world [m].
+        time: time since the start [s].
+        position: position of the root in the world [m].
         yaw: heading [rad].
-        velocity: of the root in the world [m/s].
-        valid: whether the configuration satisfies the conditions it was judged by.
+        velocity: velocity of the root in the world [m/s].
+        valid: whether each configuration satisfies the conditions it was judged by.
     """
 
     time: Float[np.ndarray, " T"]
@@ -49,7 +49,7 @@ class GuidePath:
     def __getitem__(
         self, rows: slice | Int[np.ndarray, " M"] | Bool[np.ndarray, " T"]
     ) -> "GuidePath":
-        """Return the path of some configurations; each keeps its time.
+        """Return the path of selected configurations, which keep their times.
 
         Args:
             rows: slice, indices or mask of the configurations to keep.
@@ -74,7 +74,7 @@ class GuidePath:
     def of_walk(
         cls, motions: RootMotions, valid: Bool[np.ndarray, "N T"], walk: int, time_step: float
     ) -> "GuidePath":
-        """Return one recorded walk, as long as it was recorded.
+        """Return one recorded walk in its full length.
 
         Args:
             motions: root motions of all walks, on the host.
@@ -94,10 +94,10 @@ class GuidePath:
     def join(cls, parts: Sequence["GuidePath"]) -> "GuidePath":
         """Return several paths as one whose clock starts at zero.
 
-        Each path begins at the configuration that the one before ends with, which is kept once.
+        Each path begins at the last configuration of the previous one, which is kept once.
 
         Args:
-            parts: paths, at least one, in the order in which they are walked.
+            parts: paths, at least one, in order.
         """
         rows = {
             each.name: np.concatenate(
@@ -120,7 +120,7 @@ def cut_walks(
     Args:
         motions: root motions of all walks, on the host.
         valid: whether each of their configurations is valid.
-        counts: number of configurations of each walk; what is recorded after them is left out.
+        counts: number of configurations of each walk; later records are left out.
         time_step: time between two configurations [s].
     """
     return [

@@ -1,4 +1,4 @@
-"""Where something is and how it is turned: poses of roots and of effectors."""
+"""Positions and orientations: poses of roots and of effectors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Pose:
             same orientation.
 
     Raises:
-        InputError: shapes disagree, a number is not finite, or the quaternion is not a unit one.
+        InputError: shapes disagree, a number is not finite, or the quaternion is not of length 1.
     """
 
     position: Float[np.ndarray, "*batch 3"]
@@ -53,7 +53,7 @@ class Pose:
             )
         if not (np.isfinite(position).all() and np.isfinite(quaternion).all()):
             raise InputError("the position and quaternion of a pose must be finite numbers")
-        with np.errstate(over="ignore"):  # files of strangers hold numbers of any size
+        with np.errstate(over="ignore"):  # untrusted files may hold numbers of any size
             length = np.linalg.norm(quaternion, axis=-1)
         if np.abs(length - 1.0).max(initial=0.0) > _UNIT:
             raise InputError("the quaternion of a pose (w, x, y, z) must have length 1")
@@ -96,17 +96,17 @@ class Pose:
         return np.arctan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
 
     def transform(self, points: Float[np.ndarray, "*batch P 3"]) -> Float[np.ndarray, "*batch P 3"]:
-        """Express points given in the body's frame in the frame outside [m]."""
+        """Return points given in the body's frame in the outer frame [m]."""
         return points @ np.swapaxes(self.rotation, -1, -2) + self.position[..., None, :]
 
     def inverse(self) -> Self:
-        """Return the transformation from the frame outside to the body's frame."""
+        """Return the transformation from the outer frame to the body's frame."""
         conjugate = self.quaternion * np.array([1.0, -1.0, -1.0, -1.0])
         turned = (matrix_of(conjugate) @ self.position[..., None])[..., 0]
         return type(self)(-turned, conjugate)
 
     def __matmul__(self, inner: Pose) -> Self:
-        """Return the pose of what has the pose `inner` in this body's frame."""
+        """Return the pose of a body that has the pose `inner` in this body's frame."""
         position = (self.rotation @ inner.position[..., None])[..., 0] + self.position
         return type(self)(position, multiply(self.quaternion, inner.quaternion))
 
@@ -117,5 +117,5 @@ class RootPose(Pose):
 
     @classmethod
     def from_motion(cls, motion: RootMotion) -> Self:
-        """Return where the root of a motion is; its root is upright."""
+        """Return the pose of the root of a motion, which is upright."""
         return cls.from_yaw(np.asarray(motion.position), np.asarray(motion.yaw))

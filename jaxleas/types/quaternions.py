@@ -31,8 +31,8 @@ def matrix_of(quaternion: Float[np.ndarray, "*batch 4"]) -> Float[np.ndarray, "*
 def quaternion_of(matrix: Float[np.ndarray, "*batch 3 3"]) -> Float[np.ndarray, "*batch 4"]:
     """Return the unit quaternion of a rotation matrix, with w >= 0.
 
-    The symmetric matrix 4 q q^T has entries that are sums of the rotation's; of its columns the
-    longest is taken, so that no half turn is ill-conditioned.
+    The entries of the symmetric matrix 4 q q^T are sums of the rotation's entries; the longest
+    of its columns is used, so that no half turn is ill-conditioned.
     """
     m = np.asarray(matrix, dtype=np.float64)
     trace = m[..., 0, 0] + m[..., 1, 1] + m[..., 2, 2]

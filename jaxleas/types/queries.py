@@ -1,4 +1,4 @@
-"""A question for a steering method: from here, now, to there."""
+"""Queries for a steering method: a start and a goal."""
 
 from dataclasses import dataclass
 
@@ -8,10 +8,10 @@ class Query:
     """One start and goal.
 
     Attributes:
-        position: of the root in the world [m]: x, y, z.
+        position: position of the root in the world [m]: x, y, z.
         yaw: heading [rad].
-        velocity: in the world [m/s]: x, y, z.
-        goal: in the world [m]: x, y.
+        velocity: velocity of the root in the world [m/s]: x, y, z.
+        goal: goal in the world [m]: x, y.
     """
 
     position: tuple[float, float, float]

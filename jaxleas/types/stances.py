@@ -1,4 +1,4 @@
-"""What touches what: contacts, the stance they make, and how long it lasts."""
+"""Contacts, the stances they make, and the durations of stances."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from jaxleas.types.poses import Pose
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """One effector on one surface.
+    """The contact of one effector with one surface.
 
     Attributes:
         effector: name of the robot's effector, such as "LF".
@@ -57,7 +57,7 @@ class Stance:
     """The set of contacts that a robot has at one time, none or one for each effector.
 
     Attributes:
-        contacts: the contact of each effector that has one, by the effector's name.
+        contacts: contact of each effector that has one, by the effector's name.
     """
 
     contacts: Mapping[str, Contact]
@@ -70,10 +70,10 @@ class Stance:
 
     @classmethod
     def of(cls, contacts: Iterable[Contact]) -> Self:
-        """Return the stance of some contacts.
+        """Return the stance with given contacts.
 
         Raises:
-            InputError: two contacts are of one effector.
+            InputError: two contacts belong to one effector.
         """
         listed = tuple(contacts)
         named = {contact.effector: contact for contact in listed}
@@ -93,7 +93,7 @@ class Stance:
         """Return the contact of an effector.
 
         Raises:
-            InputError: the effector has none.
+            InputError: the effector has no contact.
         """
         if effector not in self.contacts:
             having = ", ".join(self.contacts) or "no effector"
@@ -130,7 +130,7 @@ class Stance:
 
 @dataclass(frozen=True, eq=False)
 class SupportPhase:
-    """A stance that stays as it is for some time.
+    """A stance that does not change for a period of time.
 
     Attributes:
         stance: contacts during the phase.

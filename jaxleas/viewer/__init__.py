@@ -1,1 +1,1 @@
-"""Viewer: a page in the browser where a policy is driven and paths and plans are played back."""
+"""The viewer: a page in the browser that drives policies and plays back paths and plans."""

@@ -1,4 +1,4 @@
-"""What can be played back: guide paths, and contact plans with the problems they answer."""
+"""Clips to play back: guide paths, and contact plans with the problems they solve."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from jaxleas.guide.standing import Pose
 from jaxleas.robots.effector import LIMB_OF_FOOT
 from jaxleas.types import GuidePath, InputError
 
-SECONDS_A_PHASE = 1.0  # a contact plan has no times of its own
+SECONDS_A_PHASE = 1.0  # duration of a phase: a contact plan has no times
 
 
 @dataclass(frozen=True)
@@ -23,10 +23,10 @@ class Foothold:
 
     Attributes:
         limb: name of the limb, "left" or "right" of bipeds.
-        position: of the middle of the sole [m].
+        position: middle of the sole [m].
         yaw: heading [rad].
-        time: from which on it stands there [s].
-        until: when the same foot leaves [s]; infinity for the last.
+        time: time at which the foot lands [s].
+        until: time at which the same foot leaves [s]; infinity for the last foothold.
     """
 
     limb: str
@@ -41,13 +41,13 @@ class Clip:
     """A motion with times.
 
     Attributes:
-        name: for people.
-        time: of the configurations, ascending from 0 [s].
-        position: of the root [m]; of no rows where the root is not known.
-        yaw: heading [rad], unwrapped.
-        valid: whether each configuration is.
-        footholds: in order of time; none for a guide path.
-        half_size: of a sole [m].
+        name: name on the page.
+        time: times of the configurations, ascending from 0 [s].
+        position: positions of the root [m]; no rows where the root is not known.
+        yaw: headings [rad], unwrapped.
+        valid: whether each configuration is valid.
+        footholds: footholds in order of time; empty for a guide path.
+        half_size: half sizes of a sole [m].
         robot: name of the robot that moves; None where the file does not say.
     """
 
@@ -66,7 +66,7 @@ class Clip:
         return float(self.time[-1])
 
     def at(self, time: float) -> tuple[Pose, bool] | None:
-        """Return the root's pose at a time [s] and whether it is valid; None if not known."""
+        """Return the root's pose at a time [s] and whether it is valid; None if it is not known."""
         if not len(self.position):
             return None
         position = np.array([np.interp(time, self.time, each) for each in self.position.T])
@@ -97,7 +97,7 @@ def guide_clip(name: str, path: GuidePath) -> Clip:
 
 
 def read_plan_clip(plan: Path, problem: Path) -> Clip:
-    """Read a contact plan and the problem it answers as a clip, one second a phase.
+    """Read a contact plan and the problem it solves as a clip, one second per phase.
 
     Raises:
         InputError: a file cannot be used, or the plan has footholds for other phases.
@@ -113,7 +113,7 @@ def read_plan_clip(plan: Path, problem: Path) -> Clip:
 
 
 def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
-    """Return a contact plan as a clip: phase k lands at k + 1 phases' time."""
+    """Return a contact plan as a clip: phase k lands after k + 1 phases."""
     made = [] if plan.footholds is None else list(plan.footholds)
     landings = [(foot, pose.position, pose.yaw, 0.0) for foot, pose in problem.initial.items()]
     landings += [

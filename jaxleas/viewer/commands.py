@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.show import Player
 
-FARTHEST = 1e6  # of a start or a goal [m]
+FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
 def view(
@@ -42,22 +42,22 @@ def view(
 
     Args:
         terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        policies: run folders, policy.npz or .onnx files: a robot each, side by side.
-        start: where the robots begin: x, y [m] and heading [deg]; by default a place with room.
-        goal: where they are sent at first: x, y [m].
+        policies: run folders, policy.npz or .onnx files: one robot each, side by side.
+        start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
+        goal: first goal of the robots: x, y [m].
         guide: guide paths to play back, .npz.
         plan: a contact plan to play back, .json; with --problem.
-        problem: the contact problem that the plan answers, .json.
-        record: write the walk to --goal, or what is played back, as one HTML file, and end.
-        host: address to listen on; only this machine reaches the default.
-        port: to listen on; 0 for any that is free.
-        browser: open a window, where there is a display.
+        problem: the contact problem that the plan solves, .json.
+        record: write the walk to --goal, or the playback, as one HTML file, and end.
+        host: address to listen on; the default can only be reached from this machine.
+        port: port to listen on; 0 for any free port.
+        browser: open a browser window, if there is a display.
         resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: of a mesh, the axis that points up.
-        scale: of a mesh, metres a unit.
-        z_min: of a .png, the height of black [m].
-        z_max: of a .png, the height of white [m].
-        zero_is_void: of a .png, whether black means no ground.
+        up: axis of a mesh that points up.
+        scale: metres per unit of a mesh.
+        z_min: height of black in a .png [m].
+        z_max: height of white in a .png [m].
+        zero_is_void: whether black means no ground in a .png.
     """
     from jaxleas.terrain.importers import import_terrain
     from jaxleas.terrain.scene import read_scene
@@ -70,7 +70,7 @@ def view(
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
     _require_drive(policies, start, goal)
     _require_moving(policies, goal, guide, plan, record)
-    for each in policies or ():  # before a page is shown; what is in them is read behind it
+    for each in policies or ():  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
     clips = _clips(guide, plan, problem)
@@ -93,7 +93,7 @@ def view(
             _announce(server, browser)
             recorder.add_panel()
             paint_sky(server)
-        # JAX is loaded only now, while the browser is busy with the ground.
+        # JAX is loaded only now, while the browser draws the ground.
         players: list[Player] = []
         if clips:
             players.append(_play_back(server, clips, playing=record is not None))
@@ -109,13 +109,13 @@ def view(
 
 @contextmanager
 def _until_interrupted(is_the_end: bool) -> Iterator[None]:
-    """Take Ctrl-C for the end of a look around, but not for the end of a recording."""
+    """Take Ctrl-C as the end of a live view, but not of a recording."""
     try:
         yield
     except KeyboardInterrupt:
         if not is_the_end:
             raise
-        print()  # what the terminal made of Ctrl-C stands on a line of its own
+        print()  # end the line on which the terminal shows Ctrl-C
 
 
 def _require_drive(
@@ -131,7 +131,7 @@ def _require_drive(
             given = " ".join(f"{each:g}" for each in numbers)
             raise InputError(f"{option} {given}: give finite numbers below 1000 km, {wanted}")
         if numbers is not None and not policies:
-            raise InputError(f"{option} needs --policies: there is nobody to walk there")
+            raise InputError(f"{option} needs --policies: there is no robot to walk there")
 
 
 def _require_moving(
@@ -154,7 +154,7 @@ def _require_moving(
 
 def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list[Clip]":
     if guide is None and plan is None:
-        return []  # without a second for what reads them
+        return []  # do not spend a second on importing their readers
     from jaxleas.viewer.clips import read_guide_clips, read_plan_clip
 
     clips = read_guide_clips(guide) if guide is not None else []
@@ -220,7 +220,7 @@ def _drive(
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
-    """Return what policies are called: the run folder, with the file where two are alike."""
+    """Return the names of policies: the run folder, with the file where two are equal."""
     whole = [each.resolve() for each in paths]
     short = [each.parent.name if each.stem == "policy" else each.stem for each in whole]
     return [

@@ -1,4 +1,4 @@
-"""Driving: people send robots to goals, or steer them, and the policies walk them there."""
+"""Driving: users send robots to goals, or steer them, and the policies walk them there."""
 
 import html
 from collections.abc import Callable, Sequence
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from viser import ViserServer
 
 LEAD = 1.0
-"""A robot that is steered is sent this far ahead, again and again [m]."""
+"""Distance ahead of a steered robot at which its goal is set, again and again [m]."""
 TURN = np.radians(15.0)
-"""A press of a key turns the course by this."""
+"""Angle by which a key press turns the course [rad]."""
 MOST_STEPS_A_FRAME = 10
-"""Beyond this the page would stand still while the robots run."""
+"""Maximum number of steps per frame: with more the page would freeze while robots walk."""
 TRAIL_EVERY, SEEN_EVERY, SPEAK_EVERY = 9, 4, 8
 """Frames between two drawings of the trail, of what the policy sees, and of the status: the page
-makes each of them anew."""
+rebuilds each of them."""
 WORDS = {
     "waiting": "stands, waiting for a goal",
     "walking": "walks",
@@ -43,18 +43,18 @@ class Rider:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the start."""
+        """Return to the start."""
         self.walker.reset(self._start)
         self._elapsed, self._frames = 0.0, 0
         self.figure.trail.begin(self._start.position)
         self._draw()
 
     def advance(self, seconds: float, steer: Callable[[Walker], None]) -> None:
-        """Let time pass; the figure moves evenly between configurations.
+        """Advance the robot; the figure moves evenly between configurations.
 
         Args:
-            seconds: on the robot's clock.
-            steer: called before each step.
+            seconds: time on the robot's clock [s].
+            steer: function called before each step.
         """
         if self.walker.state != "walking":
             return
@@ -88,10 +88,10 @@ class Rider:
 
 
 class Drive:
-    """The panel for driving, and what happens in a frame.
+    """The panel for driving, and the actions of each frame.
 
-    What people do arrives on the server's threads; it waits in a queue for the next frame, so that
-    robots are moved by one thread alone.
+    User actions arrive on the server's threads; they wait in a queue for the next frame, so that
+    only one thread moves robots.
     """
 
     def __init__(
@@ -100,10 +100,10 @@ class Drive:
         """Draw robots and panel.
 
         Args:
-            server: of the page.
-            terrain: that is clicked on.
-            walkers: side by side.
-            start: where they all begin.
+            server: server of the page.
+            terrain: terrain that users click on.
+            walkers: robots, drawn side by side.
+            start: pose where all of them begin.
         """
         self._terrain = terrain
         self._wishes: SimpleQueue[Callable[[], None]] = SimpleQueue()
@@ -122,14 +122,14 @@ class Drive:
 
     @property
     def busy(self) -> bool:
-        """Whether a robot still walks."""
+        """Whether a robot is still walking."""
         return any(rider.walker.state == "walking" for rider in self._riders)
 
     def frame(self, seconds: float) -> None:
-        """Let time pass on the page.
+        """Advance the page.
 
         Args:
-            seconds: since the frame before.
+            seconds: time since the previous frame [s].
         """
         while not self._wishes.empty():
             self._wishes.get()()
@@ -148,20 +148,20 @@ class Drive:
         self._goal_x.value, self._goal_y.value = round(goal[0], 2), round(goal[1], 2)
 
     def reset(self) -> None:
-        """Put the robots back to the start."""
+        """Put the robots back at the start."""
         self._course = None
         for rider in self._riders:
             rider.reset()
         self._goal.visible = False
 
     def stop(self) -> None:
-        """Let the robots stand."""
+        """Stop the robots."""
         self._course = None
         for rider in self._riders:
             rider.walker.stop()
 
     def turn(self, angle: float) -> None:
-        """Walk on, on a course turned by an angle [rad]; at first the course is the heading."""
+        """Walk on a course turned by an angle [rad]; the first course is the heading."""
         if self._course is None:
             self._course = self._riders[0].walker.pose.yaw
             self._goal.visible = False
@@ -178,7 +178,7 @@ class Drive:
         name, robot = f"/robot_{index}", walker.env.robot
         figure = Figure(server, name, robot, ROBOTS[index % len(ROBOTS)])
         if named:
-            # They begin at one place: each name stands over that of the one before.
+            # They begin at one place: each name is above the previous one.
             top = max(box.high[2] for box in robot.trunk) + 0.15 * (index + 1)
             server.scene.add_label(f"{name}/name", walker.name, position=(0.0, 0.0, top))
         return figure
@@ -235,7 +235,7 @@ class Drive:
             self._wishes.put(lambda: self.send(goal))
 
     def _speak(self) -> None:
-        """Say how each robot fares: at once what has become of it, and now and then the numbers."""
+        """Show the status of each robot: a new state at once, and the numbers now and then."""
         self._frames += 1
         walkers = [rider.walker for rider in self._riders]
         states = " ".join(walker.state for walker in walkers)

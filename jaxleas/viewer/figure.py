@@ -1,4 +1,4 @@
-"""What is drawn of a robot: trunk, ranges of motion, what it sees, where it has been."""
+"""The figure of a robot: trunk, ranges of motion, what it sees, where it has been."""
 
 from itertools import product
 from typing import TYPE_CHECKING
@@ -19,33 +19,33 @@ if TYPE_CHECKING:
     from jaxleas.guide.standing import Pose
 
 ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (150, 84, 170))
-"""Of the robots side by side, one after another."""
+"""Colours of the robots, in order."""
 INVALID: Colour = (205, 40, 50)
 LIMBS: dict[str, Colour] = {"left": (200, 60, 60), "right": (220, 175, 40)}
 OTHER_LIMB: Colour = (120, 120, 120)
 GOAL: Colour = (30, 150, 60)
 REACH_OPACITY = 0.22
-SEEN_LIFT = 0.02  # of what the policy sees above the ground, which would hide half of each dot [m]
+SEEN_LIFT = 0.02  # height of the dots above the ground, which would hide half of each dot [m]
 LOW, HIGH = np.array([70.0, 30.0, 140.0]), np.array([255.0, 235.0, 40.0])
-"""Colours of what the policy sees, from the lowest height that it can tell to the highest."""
+"""Colours of what the policy sees, from the lowest height it can distinguish to the highest."""
 
 
 class Figure:
-    """A robot on the page; moved as a whole by `place`."""
+    """A robot on the page; `place` moves it as a whole."""
 
     def __init__(self, server: "ViserServer", name: str, robot: Robot, colour: Colour) -> None:
-        """Draw it.
+        """Draw the robot.
 
         Args:
-            server: of the page.
-            name: of its node, such as "/robot_0".
-            robot: whose trunk and ranges of motion are drawn.
-            colour: of the trunk.
+            server: server of the page.
+            name: name of the figure's node, such as "/robot_0".
+            robot: robot whose trunk and ranges of motion are drawn.
+            colour: colour of the trunk.
         """
         self._server, self._name = server, name
         self._root = server.scene.add_frame(name, show_axes=False)
         body = _body(robot)
-        # A colour is painted on, so there is a body for each; one of them is visible.
+        # Colours are part of a mesh, so there is a body for each colour; one of them is visible.
         self._bodies = [
             add_painted(server, f"{name}/body_{kind}", body, shade(body, np.array(paint, float)))
             for kind, paint in (("valid", colour), ("invalid", INVALID))
@@ -72,7 +72,7 @@ class Figure:
         self._root.wxyz = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
 
     def mark(self, valid: bool) -> None:
-        """Show by the body's colour whether the configuration is valid."""
+        """Colour the body by whether the configuration is valid."""
         if valid != self._valid:
             self._valid = valid
             for body, shown in zip(self._bodies, (valid, not valid), strict=True):
@@ -82,15 +82,15 @@ class Figure:
         """Draw the points that the policy sees.
 
         Args:
-            points: in the root frame [m].
-            share: 0 for the lowest height that the policy can tell, 1 for the highest.
+            points: points in the root frame [m].
+            share: 0 for the lowest height that the policy can distinguish, 1 for the highest.
         """
         points = np.add(points, [0.0, 0.0, SEEN_LIFT])
         colours = np.round(LOW + share[:, None] * (HIGH - LOW)).astype(np.uint8)
         if self.seen is None:
             self.seen = self._add_points("seen", points, colours, size=0.035)
-            # The page makes a new material whenever colours change, and compiles its program anew
-            # unless another material has it: that of two points inside the body, unseen.
+            # The page makes a new material whenever colours change, and compiles its program again
+            # unless another material uses it: here that of two hidden points inside the body.
             self._add_points("seen_before", np.zeros((2, 3)), colours[:2], size=1e-4)
         else:
             self.seen.points, self.seen.colors = points.astype(np.float32), colours
@@ -119,7 +119,7 @@ class Figure:
 
 
 def draw_goal(server: "ViserServer", position: Float[np.ndarray, " 3"]) -> "GlbHandle":
-    """Draw a flag where the robots are sent, still hidden."""
+    """Draw a flag at the goal of the robots, still hidden."""
     pole = mesh_of_hull(
         np.array([[x, y, z] for x in (-0.012, 0.012) for y in (-0.012, 0.012) for z in (0.0, 0.7)])
     )
@@ -135,7 +135,7 @@ def draw_goal(server: "ViserServer", position: Float[np.ndarray, " 3"]) -> "GlbH
 
 
 def _body(robot: Robot) -> Mesh:
-    """Return the trunk's boxes, and a nose that points where the robot is heading."""
+    """Return the trunk's boxes, and a nose that points along the robot's heading."""
     corners = [np.array(list(product(*zip(box.low, box.high, strict=True)))) for box in robot.trunk]
     front = max(box.high[0] for box in robot.trunk)
     nose = [[front, -0.06, 0.1], [front, 0.06, 0.1], [front, 0.0, 0.2], [front + 0.15, 0.0, 0.1]]
@@ -143,7 +143,7 @@ def _body(robot: Robot) -> Mesh:
 
 
 def mesh_of_hull(points: Float[np.ndarray, "P 3"]) -> Mesh:
-    """Return the triangles of a convex hull, each with corners of its own."""
+    """Return the triangles of a convex hull, each with its own corners."""
     hull = ConvexHull(points)
     first, second, third = np.moveaxis(points[hull.simplices], 1, 0)
     outward = np.einsum("ij,ij->i", np.cross(second - first, third - first), hull.equations[:, :3])

@@ -1,6 +1,6 @@
-"""What is drawn of a terrain, and where the camera stands at first.
+"""The drawing of a terrain, and the first position of the camera.
 
-Nothing here needs JAX: the ground is to be seen while the rest is still being loaded.
+Nothing here needs JAX: the ground is visible while the rest is still being loaded.
 """
 
 from typing import TYPE_CHECKING
@@ -23,21 +23,21 @@ DEEP, TALL = np.array([84.0, 99.0, 118.0]), np.array([196.0, 178.0, 142.0])
 """Colours of the lowest and of the highest ground."""
 OBSTACLE = np.array([168.0, 88.0, 70.0])
 EDGE: Colour = (58, 64, 74)
-EDGE_WIDTH = 0.012  # [m]
+EDGE_WIDTH = 0.012  # width of drawn edges [m]
 LARGEST_VIEW = 9.0
-"""Ground of more metres than this is not shown as a whole when robots are driven [m]."""
+"""Size above which the ground is not shown as a whole when robots are driven [m]."""
 
 NEAR_ENOUGH = 1.0
-"""A camera that looks this near to where it should is left alone [m]."""
+"""Distance within which a camera that looks near its target is not moved [m]."""
 
 
 def draw_terrain(server: "ViserServer", terrain: HeightMap, scene: Scene | None) -> None:
-    """Draw a terrain: a scene's polygons, or else the height map; and look at it from the south.
+    """Draw a terrain, as a scene's polygons or as a height map, and look at it from the south.
 
     Args:
-        server: of the page.
-        terrain: to be looked at.
-        scene: whose surfaces and obstacles are drawn, where the terrain was one.
+        server: server of the page.
+        terrain: height map of the terrain.
+        scene: scene whose surfaces and obstacles are drawn, if the terrain was a scene.
     """
     low, high = float(np.nanmin(terrain.heights)), float(np.nanmax(terrain.heights))
     server.scene.configure_default_lights(enabled=False)
@@ -56,10 +56,10 @@ def draw_terrain(server: "ViserServer", terrain: HeightMap, scene: Scene | None)
 
 
 def paint_sky(server: "ViserServer") -> None:
-    """Colour the page behind what is drawn.
+    """Colour the background of the page.
 
-    Viser's own background is drawn anew in each frame: 16 of the 40 ms that a frame takes in
-    software. The page's style costs nothing.
+    Viser draws its own background again in each frame: 16 of the 40 ms that a frame takes in
+    software. A background in the page's style costs nothing.
     """
     sky = f"linear-gradient(rgb{SKY_ABOVE}, rgb{SKY_BELOW})"
     server.gui.add_html(f"<style>canvas[data-engine] {{ background: {sky} }}</style>")
@@ -72,7 +72,7 @@ def _add_mesh(
     heights: tuple[float, float],
     tallest: np.ndarray = TALL,
 ) -> None:
-    """Add a mesh that is the brighter, the higher."""
+    """Add a mesh that is brighter where it is higher."""
     low, high = heights
     share = (mesh.vertices[:, 2:] - low) / max(high - low, 0.5)
     colours = DEEP + np.clip(share, 0.0, 1.0) * (tallest - DEEP)
@@ -92,12 +92,12 @@ def look_at_all(server: "ViserServer", terrain: HeightMap) -> None:
 
 
 def look_near(server: "ViserServer", terrain: HeightMap, place: tuple[float, float] | None) -> None:
-    """On ground too large to make out a robot on it, place the camera near one.
+    """Place the camera near a robot on ground too large to see the robot on it.
 
     Args:
-        server: of the page; who looks at it already, is moved as well.
-        terrain: to be looked at.
-        place: x, y of the robot [m]; by default the end of the ground where robots begin.
+        server: server of the page; the cameras of connected clients move as well.
+        terrain: height map of the terrain.
+        place: place x, y of the robot [m]; by default the end of the ground where robots begin.
     """
     x_min, x_max, y_min, y_max = terrain.extent
     if max(x_max - x_min, y_max - y_min) <= LARGEST_VIEW:

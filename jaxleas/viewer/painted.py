@@ -1,7 +1,7 @@
-"""Meshes whose light is painted on: glTF with a colour a vertex and no material to be lit.
+"""Meshes with computed light: glTF with a colour per vertex and an unlit material.
 
-A browser that draws in software spends most of a frame on light; here it is computed once, on the
-host, as an evenly lit sky and a sun, and the page only fills triangles.
+A browser that draws in software spends most of a frame on light; here the light of an even sky and
+a sun is computed once, on the host, and the page only fills triangles.
 """
 
 import json
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from viser import GlbHandle, ViserServer
 
 SUN = np.array([-4.0, -6.0, 9.0]) / np.linalg.norm([-4.0, -6.0, 9.0])
-"""Direction to the sun: south-west, where the camera stands, and high."""
+"""Direction to the sun: south-west, where the camera is, and high."""
 SKY_LIGHT, SUN_LIGHT = 0.82, 0.5
-"""Shares of a colour that the open sky and the sun across a face give it."""
-FLOAT, USHORT, UINT = 5126, 5123, 5125  # glTF's component types
-VERTICES, INDICES = 34962, 34963  # and buffer targets
+"""Shares of a face's colour that come from the open sky and from a sun at right angles to it."""
+FLOAT, USHORT, UINT = 5126, 5123, 5125  # component types of glTF
+VERTICES, INDICES = 34962, 34963  # buffer targets of glTF
 
 
 def flat(mesh: Mesh) -> Mesh:
-    """Return a mesh whose triangles share no corners, so that each can have a shade of its own."""
+    """Return a mesh whose triangles share no corners, so that each can have its own shade."""
     return Mesh(mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(mesh.faces.size).reshape(-1, 3))
 
 
@@ -40,16 +40,16 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
 
 
 def two_sided(mesh: Mesh) -> Mesh:
-    """Return a mesh whose faces are seen from behind, too."""
+    """Return a mesh whose faces are also visible from behind."""
     return Mesh(mesh.vertices, np.concatenate([mesh.faces, mesh.faces[:, ::-1]]))
 
 
 def shade(mesh: Mesh, colours: Float[np.ndarray, "*V 3"]) -> Float[np.ndarray, "V 3"]:
-    """Return the colours of a mesh's corners as the light falls on them.
+    """Return the colours of a mesh's corners under the light.
 
     Args:
-        mesh: whose faces share corners only where they lie in one plane.
-        colours: of each corner, or of all, 0 to 255.
+        mesh: mesh whose faces share corners only where they lie in one plane.
+        colours: colour of each corner, or of all, 0 to 255.
     """
     first, second, third = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
     normals = np.cross(second - first, third - first)
@@ -68,21 +68,21 @@ def add_painted(
     colours: Float[np.ndarray, "V 3"],
     opacity: float = 1.0,
 ) -> "GlbHandle":
-    """Add a mesh to the page, in the place of one of the same name; the rest as for `glb_of`."""
+    """Add a mesh to the page, replacing one of the same name; the rest is as for `glb_of`."""
     content = glb_of(mesh, colours, opacity)
     return server.scene.add_glb(name, content, cast_shadow=False, receive_shadow=False)
 
 
 def glb_of(mesh: Mesh, colours: Float[np.ndarray, "V 3"], opacity: float = 1.0) -> bytes:
-    """Return a mesh as binary glTF that no light changes (KHR_materials_unlit).
+    """Return a mesh as binary glTF with an unlit material (KHR_materials_unlit).
 
-    Its faces are seen from the front alone: all that is opaque shares one program, which a browser
-    that draws in software takes a fifth of a second to compile.
+    Its faces are only visible from the front: all opaque meshes share one program, which a browser
+    that draws in software takes 0.2 s to compile.
 
     Args:
-        mesh: to be drawn [m], z up as everywhere.
-        colours: of each corner as it shall look, sRGB from 0 to 255.
-        opacity: of the whole mesh.
+        mesh: mesh to be drawn, z up [m].
+        colours: final colour of each corner, sRGB from 0 to 255.
+        opacity: opacity of the whole mesh.
     """
     positions = np.asarray(mesh.vertices, "<f4")
     paint = np.column_stack([_linear(colours), np.full(len(positions), 65535.0)])

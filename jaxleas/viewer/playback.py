@@ -1,4 +1,4 @@
-"""Playing back: a slider through time, and the robot where it was then."""
+"""Playback: a slider for the time, and the robot at its pose at that time."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from viser import GlbHandle, ViserServer
 
 PLAYED: Colour = (60, 110, 170)
-THICKNESS = 0.015  # of a sole [m]
+THICKNESS = 0.015  # thickness of a sole [m]
 LIFT = np.array([0.0, 0.0, 0.5 * THICKNESS])
 LIFTED = 0.25
 """Opacity of a foothold that the foot has left."""
@@ -40,15 +40,15 @@ def figure_robot(clips: Sequence[Clip]) -> Robot:
 
 
 class Playback:
-    """The panel for playing back, and what happens in a frame."""
+    """The panel for playback, and the actions of each frame."""
 
     def __init__(self, server: "ViserServer", robot: Robot, clips: Sequence[Clip]) -> None:
-        """Draw all paths, the robot at the start of the first, and the panel.
+        """Draw all paths, the robot at the start of the first path, and the panel.
 
         Args:
-            server: of the page.
-            robot: that is shown.
-            clips: one is played at a time.
+            server: server of the page.
+            robot: robot that is shown.
+            clips: clips, of which one is played at a time.
         """
         self._server, self._clips = server, list(clips)
         self._figure = Figure(server, "/played", robot, PLAYED)
@@ -62,14 +62,14 @@ class Playback:
 
     @property
     def busy(self) -> bool:
-        """Whether it plays and has not come to the end."""
+        """Whether a clip is playing and has not ended."""
         return self._plays.value and self._time < self._clip.duration
 
     def frame(self, seconds: float) -> None:
-        """Let time pass, if it plays.
+        """Advance the clip, if it is playing.
 
         Args:
-            seconds: since the frame before.
+            seconds: time since the previous frame [s].
         """
         if self._chosen.value != self._clip.name:
             self._choose([clip.name for clip in self._clips].index(self._chosen.value))
@@ -100,7 +100,7 @@ class Playback:
 
         @self._slider.on_update
         def _(event: Any) -> None:
-            if event.client is not None:  # a person moved it, not the frame below
+            if event.client is not None:  # a user moved the slider, not `frame`
                 self._wanted = min(self._slider.value, self._clip.duration)
 
         @self._plays.on_update
@@ -122,7 +122,7 @@ class Playback:
     def _add_foothold(
         self, name: str, foothold: Foothold, half_size: tuple[float, float, float]
     ) -> "tuple[GlbHandle, GlbHandle]":
-        """Add a sole twice, both hidden: as it stands, and as it has been left."""
+        """Add a sole twice, both hidden: as a standing foot, and as a foothold that was left."""
         sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
         colours = shade(sole, np.array(LIMBS.get(foothold.limb, OTHER_LIMB), float))
         nodes = (

@@ -1,4 +1,4 @@
-"""Recording what the page shows into one HTML file that needs nothing else."""
+"""Recordings of the page as one self-contained HTML file."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from viser import ViserServer
 
 FILE_NAME = "jaxleas_recording.html"
-MOST_SECONDS = 600.0  # of a recording: it is kept in memory until it is saved
+MOST_SECONDS = 600.0  # longest recording: it is kept in memory until it is saved
 
 
 class Recorder:
-    """Keeps what happens from `start` to `finish`."""
+    """A recorder of the page from `start` to `finish`."""
 
     def __init__(self, server: "ViserServer") -> None:
         self._server = server
@@ -21,15 +21,15 @@ class Recorder:
 
     @property
     def recording(self) -> bool:
-        """Whether anything is being kept."""
+        """Whether a recording is in progress."""
         return self._scene is not None
 
     def start(self) -> None:
-        """Begin with the scene as it is."""
+        """Begin a recording with the current scene."""
         self._scene, self._seconds = self._server.get_scene_serializer(), 0.0
 
     def frame(self, seconds: float) -> None:
-        """Let time pass in the recording, which forgets what comes after its longest time."""
+        """Advance the recording; what comes after its longest time is not kept."""
         if self.recording and self._seconds < MOST_SECONDS:
             self._scene.insert_sleep(seconds)
             self._seconds += seconds

@@ -1,4 +1,4 @@
-"""Paths as ribbons, and the one that a walking robot leaves behind, drawn piece by piece."""
+"""Paths as ribbons, and the trail of a walking robot, drawn piece by piece."""
 
 from typing import TYPE_CHECKING
 
@@ -12,23 +12,23 @@ from jaxleas.viewer.terrain_mesh import Mesh
 if TYPE_CHECKING:
     from viser import ViserServer
 
-WIDTH = 0.022  # [m]
+WIDTH = 0.022  # width of a ribbon [m]
 PIECE = 48
-"""Configurations of a piece of trail: only the last piece is drawn again as it grows."""
+"""Number of configurations of a piece of trail: only the last piece is drawn again as it grows."""
 MOST_PIECES = 64
-"""Of a trail; the oldest go first."""
+"""Maximum number of pieces of a trail; the oldest ones are removed first."""
 
 
 def mesh_of_path(positions: Float[np.ndarray, "T 3"]) -> Mesh:
-    """Return a path as a level and an upright strip along it, so that it is seen from everywhere.
+    """Return a path as a level and an upright strip along it, visible from every side.
 
     Args:
-        positions: at least two; some may coincide [m].
+        positions: positions, at least two; some may coincide [m].
     """
     ahead = np.gradient(positions[:, :2], axis=0)
     length = np.linalg.norm(ahead, axis=1)
     moving = np.flatnonzero(length > 1e-9)
-    if len(moving):  # where it stands, it keeps its direction; at first the one that comes
+    if len(moving):  # a robot at rest keeps its direction; before it moves, its first one
         nearest = moving[np.maximum(np.searchsorted(moving, np.arange(len(ahead)), "right") - 1, 0)]
         ahead = ahead[nearest] / length[nearest, None]
     side = np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))])
@@ -43,7 +43,7 @@ def mesh_of_path(positions: Float[np.ndarray, "T 3"]) -> Mesh:
 def draw_path(
     server: "ViserServer", name: str, positions: Float[np.ndarray, "T 3"], colour: Colour
 ) -> None:
-    """Draw a path [m] in the place of one of the same name; one configuration makes no path."""
+    """Draw a path [m], replacing one of the same name; one configuration makes no path."""
     if len(positions) < 2:
         server.scene.remove_by_name(name)
         return
@@ -53,27 +53,27 @@ def draw_path(
 
 
 class Trail:
-    """Where a robot has been."""
+    """The trail of a robot."""
 
     def __init__(self, server: "ViserServer", name: str, colour: Colour) -> None:
-        """Begin one that is empty.
+        """Begin an empty trail.
 
         Args:
-            server: of the page.
-            name: of its node.
-            colour: of the ribbon.
+            server: server of the page.
+            name: name of the trail's node.
+            colour: colour of the ribbon.
         """
         self._server, self._name, self._colour = server, name, colour
         self._pieces = 0
         self._positions: list[np.ndarray] = []
 
     def begin(self, position: Float[np.ndarray, " 3"]) -> None:
-        """Forget everything but a first position [m]."""
+        """Restart the trail at a position [m]."""
         self._server.scene.remove_by_name(self._name)
         self._pieces, self._positions = 0, [position]
 
     def add(self, position: Float[np.ndarray, " 3"]) -> None:
-        """Go on to a position [m], seen from the next `draw`."""
+        """Add a position [m], which the next `draw` shows."""
         self._positions.append(position)
         if len(self._positions) > PIECE:
             self.draw()
@@ -81,7 +81,7 @@ class Trail:
             self._server.scene.remove_by_name(f"{self._name}/{self._pieces - MOST_PIECES}")
 
     def draw(self) -> None:
-        """Draw the last piece as it is now."""
+        """Draw the current state of the last piece."""
         if len(self._positions) > 1:
             name = f"{self._name}/{self._pieces}"
             draw_path(self._server, name, np.array(self._positions), self._colour)

@@ -1,4 +1,4 @@
-"""The server behind the page: viser, on the loopback interface unless told otherwise."""
+"""The server of the page: viser, on the loopback interface by default."""
 
 import contextlib
 import errno
@@ -24,20 +24,20 @@ def serving(host: str, port: int) -> "Iterator[ViserServer]":
     """Yield a running server; stop it at the end.
 
     Args:
-        host: address to listen on; 127.0.0.1 is reached from this machine alone.
-        port: to listen on; 0 for any that is free.
+        host: address to listen on; 127.0.0.1 can only be reached from this machine.
+        port: port to listen on; 0 for any free port.
 
     Raises:
-        InputError: viser is not installed, or nobody can listen there.
+        InputError: viser is not installed, or the address cannot be listened on.
     """
     ViserServer = _viser_server()
     _require_free(host, port)
     with _silent():
         server = ViserServer(host=host, port=port, label=LABEL, verbose=False)
     try:
-        if port not in (0, server.get_port()):  # viser takes the next one without a word
+        if port not in (0, server.get_port()):  # viser silently takes the next port
             raise InputError(_in_use(host, port))
-        # Viser can pass a scene on through a server of its own; here nothing leaves the machine.
+        # Viser can share a scene through its public server; here nothing leaves the machine.
         server.request_share_url = lambda verbose=True: None
         server.gui.configure_theme(
             show_logo=False, show_share_button=False, control_width="medium", dark_mode=False
@@ -49,24 +49,24 @@ def serving(host: str, port: int) -> "Iterator[ViserServer]":
 
 
 def address_of(server: "ViserServer") -> str:
-    """Return what to type into a browser on this machine."""
+    """Return the address of the page for a browser on this machine."""
     host = server.get_host()
     local = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
     return f"http://{local}:{server.get_port()}"
 
 
 def from_elsewhere(host: str, port: int) -> str:
-    """Say how, or that, other machines reach the page."""
+    """Return a sentence on how other machines reach the page."""
     if host == "localhost" or host == "::1" or host.startswith("127."):
         there = f"[{host}]" if ":" in host else host
         return f"from elsewhere forward the port (ssh -L {port}:{there}:{port} THIS_MACHINE)"
-    return "whoever reaches this machine can open it, too: there is no password"
+    return "anyone who can reach this machine can open it, too: there is no password"
 
 
 def open_browser(address: str) -> bool:
-    """Show the page in a browser window; return whether there is one to show it in.
+    """Show the page in a browser window; return whether one could be opened.
 
-    A browser in the terminal would take the terminal away, so on Linux a display is asked for.
+    A browser in the terminal would block the terminal, so on Linux a display is required.
     """
     has_window = sys.platform in ("darwin", "win32") or any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")
@@ -90,7 +90,7 @@ def _viser_server() -> "type[ViserServer]":
 
 
 def _require_free(host: str, port: int) -> None:
-    """Refuse an address that cannot be listened on, before anything is loaded or drawn."""
+    """Refuse an address that cannot be used, before anything is loaded or drawn."""
     if not 0 <= port <= 65535:
         raise InputError(f"--port {port} is no port: give 0 (any free one) to 65535")
     try:
@@ -101,7 +101,7 @@ def _require_free(host: str, port: int) -> None:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(address)
             probe.listen(1)
-    except (OSError, UnicodeError) as error:  # the latter of a name that can be no host's
+    except (OSError, UnicodeError) as error:  # UnicodeError: for a name that cannot be a host's
         if getattr(error, "errno", None) == errno.EADDRINUSE:
             raise InputError(_in_use(host, port)) from error
         raise InputError(
@@ -119,6 +119,6 @@ def _in_use(host: str, port: int) -> str:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Keep viser's banner off the terminal."""
+    """Suppress viser's banner on the terminal."""
     with contextlib.redirect_stdout(io.StringIO()):
         yield

@@ -1,4 +1,4 @@
-"""Frame after frame: what moves on the page, live or into a recording."""
+"""The frames of the page, shown live or written to a recording."""
 
 import time
 from collections.abc import Sequence
@@ -9,24 +9,24 @@ from jaxleas.files import write_text
 from jaxleas.viewer.recording import MOST_SECONDS, Recorder
 
 FRAME = 1.0 / 32.0
-"""Between two frames [s]: 30 a second are promised, and a busy machine is late now and then."""
+"""Time between two frames [s]: 30 per second are promised, and a busy machine is late at times."""
 
 
 class Player(Protocol):
-    """What moves on the page."""
+    """An object that moves on the page."""
 
     @property
     def busy(self) -> bool:
-        """Whether it has more to show by itself."""
+        """Whether it has more to show without user actions."""
         ...
 
     def frame(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance by one frame."""
         ...
 
 
 def show(players: Sequence[Player], recorder: Recorder) -> None:
-    """Show frames, evenly spaced, until somebody presses Ctrl-C."""
+    """Show frames, evenly spaced, until Ctrl-C."""
     before = due = time.monotonic()
     while True:
         now = time.monotonic()
@@ -34,12 +34,12 @@ def show(players: Sequence[Player], recorder: Recorder) -> None:
             player.frame(now - before)
         recorder.frame(now - before)
         before = now
-        due = max(due + FRAME, time.monotonic())  # what is late is not made up for
+        due = max(due + FRAME, time.monotonic())  # a delay is not made up for
         time.sleep(max(0.0, due - time.monotonic()))
 
 
 def write_recording(path: Path, recorder: Recorder, players: Sequence[Player]) -> None:
-    """Play everything once, as fast as it goes, and write it."""
+    """Play everything once, as fast as possible, and write the recording."""
     recorder.start()
     seconds = 0.0
     while any(player.busy for player in players) and seconds < MOST_SECONDS:

@@ -1,4 +1,4 @@
-"""Terrain as triangles for the page, and where a ray of sight meets it."""
+"""Terrain as triangles for the page, and its intersection with rays."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -10,17 +10,18 @@ from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import is_ground
 
 MOST_CELLS = 250_000
-"""A larger map is thinned before it is sent: a browser on an old laptop must turn it smoothly."""
+"""Larger maps are thinned before they are sent: a browser on an old laptop must turn them
+smoothly."""
 LIFT = 0.004
-"""Of rims above their polygons, which would shimmer through them [m]."""
+"""Height of rims above their polygons, which would otherwise show through [m]."""
 
 
 class Mesh(NamedTuple):
-    """Triangles.
+    """A mesh of triangles.
 
     Attributes:
         vertices: corners [m].
-        faces: indices of three corners each, counter-clockwise from outside.
+        faces: indices of the three corners of each triangle, counter-clockwise from outside.
     """
 
     vertices: Float[np.ndarray, "V 3"]
@@ -42,8 +43,8 @@ def mesh_of_edges(polygons: Iterable[Float[np.ndarray, "V 3"]], width: float) ->
     """Return the rims of convex polygons as strips, just above them.
 
     Args:
-        polygons: counter-clockwise from outside.
-        width: of a strip [m]; less where a polygon is too small for it.
+        polygons: polygons, counter-clockwise from outside.
+        width: width of a strip [m]; smaller where a polygon is too small for it.
     """
     quads: list[np.ndarray] = [np.zeros((0, 4, 3))]
     for polygon in polygons:
@@ -64,10 +65,10 @@ def mesh_of_edges(polygons: Iterable[Float[np.ndarray, "V 3"]], width: float) ->
 
 
 def mesh_of_map(terrain: HeightMap) -> Mesh:
-    """Return a height map as level cells joined by upright walls: what the policy feels.
+    """Return a height map as level cells joined by upright walls: what the policy observes.
 
-    A wall joins two neighbouring cells of different height; beside the void there is none. Maps of
-    more than `MOST_CELLS` are thinned: each block of cells shows its highest.
+    A wall joins two neighbouring cells of different height; there are no walls next to the void.
+    Maps of more than `MOST_CELLS` are thinned: each block of cells shows its highest cell.
     """
     heights, resolution, origin = _thinned(terrain)
     rows, columns = heights.shape
@@ -115,7 +116,7 @@ def _tops(heights: np.ndarray, x: np.ndarray, y: np.ndarray, half: float) -> np.
 def _walls(heights: np.ndarray, x: np.ndarray, y: np.ndarray, half: float) -> np.ndarray:
     """Return the walls between each cell and the next one along its row."""
     here, there = heights[:, :-1], heights[:, 1:]
-    step = np.abs(here - there) > 1e-4  # never true beside NaN
+    step = np.abs(here - there) > 1e-4  # never true next to NaN
     edge, middle = x[:, :-1][step] + half, y[:, :-1][step]
     low, high = here[step], there[step]
     corners = [(-half, low), (half, low), (half, high), (-half, high)]
@@ -131,10 +132,10 @@ def meet(
     """Return where a ray first comes below the ground, or below the lowest ground over the void.
 
     Args:
-        terrain: that is looked at.
-        origin: of the ray [m].
-        direction: of the ray; need not be of unit length.
-        reach: how far to look [m].
+        terrain: height map that the ray meets.
+        origin: origin of the ray [m].
+        direction: direction of the ray, of any length above 0.
+        reach: length of the ray [m].
 
     Returns:
         The point [m], or None for a ray into the sky.
@@ -143,7 +144,7 @@ def meet(
     low, high = float(np.nanmin(terrain.heights)), float(np.nanmax(terrain.heights))
     if direction[2] > -1e-9:
         return None
-    # Only where the ray is between the highest and the lowest ground can it meet any.
+    # The ray can meet the ground only between the highest and the lowest ground.
     first = max(0.0, (high - origin[2]) / direction[2])
     last = min(reach, (low - origin[2]) / direction[2])
     if last < first:

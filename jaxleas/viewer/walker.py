@@ -1,4 +1,4 @@
-"""One robot that a policy walks, a time step at a time, for as long as somebody watches."""
+"""One robot that a policy walks, one time step at a time, as long as the page is shown."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -22,12 +22,12 @@ State = Literal["waiting", "walking", "arrived", "invalid"]
 
 @dataclass
 class Sight:
-    """What the robot perceives where it stands.
+    """The observation of a robot at its current configuration.
 
     Attributes:
-        heights: of the observation's grid relative to the root, clipped as the policy sees them
-            [m].
-        margin: of the environment's condition [m].
+        heights: heights of the observation's grid relative to the root, clipped as the policy sees
+            them [m].
+        margin: margin of the environment's condition [m].
     """
 
     heights: Float[np.ndarray, " points"]
@@ -37,16 +37,16 @@ class Sight:
 class Walker:
     """A robot, its policy and its goal.
 
-    All that is compiled is compiled by the first step, made here: a step afterwards takes a
-    fraction of a millisecond, whatever the goal.
+    The first step, made on construction, compiles everything: a step afterwards takes a fraction
+    of a millisecond, whatever the goal.
 
     Attributes:
-        name: of the policy, for people.
-        env: that the policy was trained in.
+        name: name of the policy on the page.
+        env: environment that the policy was trained in.
         state: "waiting" for a first goal, "walking", "arrived" or "invalid": standing in a
             configuration that violates the condition, until `reset`.
-        sight: at the present configuration.
-        steps: made since the start.
+        sight: observation at the current configuration.
+        steps: number of steps since the start.
     """
 
     def __init__(
@@ -55,10 +55,10 @@ class Walker:
         """Compile the step.
 
         Args:
-            name: of the policy, for people.
-            env: built from the policy's own config.
-            policy: that steers.
-            atlas: whose only map is the terrain.
+            name: name of the policy on the page.
+            env: environment built from the policy's own config.
+            policy: policy that steers.
+            atlas: atlas whose only map is the terrain.
         """
         self.name, self.env = name, env
         method = leas(env, policy)
@@ -94,36 +94,36 @@ class Walker:
             self._stand("waiting")
 
     def step(self) -> None:
-        """Move for one time step (T eq. 3.3); arrive, or fail, as a roll-out would."""
+        """Move for one time step (T eq. 3.3); arrive, or fail, as in a roll-out."""
         goal = self._goal or (0.0, 0.0)
-        target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS looks at x and y alone
+        target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS only uses x and y
         self._motion = self._move(self._heights, self._motion, target)
         self.before, self.pose = self.pose, _pose(self._motion)
         self.steps += 1
         self._perceive()
-        if not self.sight.margin >= 0.0:  # a NaN is no valid configuration
+        if not self.sight.margin >= 0.0:  # a NaN margin is not valid, either
             self._stand("invalid")
         elif np.hypot(*(self.pose.position[:2] - goal)) <= self.env.config.goal_radius:
             self._stand("arrived")
 
     @property
     def seconds(self) -> float:
-        """Walked since the start, on the robot's clock [s]."""
+        """Time walked since the start, on the robot's clock [s]."""
         return self.steps * self.env.config.limits.time_step
 
     @property
     def goal(self) -> tuple[float, float] | None:
-        """Where the robot was last sent (x, y) [m]."""
+        """The last goal of the robot (x, y) [m]."""
         return self._goal
 
     def between(self, share: float) -> Pose:
-        """Return the pose so far between the last two configurations, both ends included."""
+        """Return the pose at a share, 0 to 1, of the way between the last two configurations."""
         turn = float(wrap_angle_on_host(self.pose.yaw - self.before.yaw))
         way = self.pose.position - self.before.position
         return Pose(self.before.position + share * way, self.before.yaw + share * turn)
 
     def points_seen(self) -> Float[np.ndarray, "points 3"]:
-        """Return the observation's grid in the root frame, at the heights that are told [m]."""
+        """Return the observation's grid in the root frame, at the observed heights [m]."""
         return np.column_stack([self.env.layout.points_in_root, self.sight.heights])
 
     def _stand(self, state: State) -> None:
@@ -142,7 +142,7 @@ class Walker:
 def _look(
     env: SteeringEnv, atlas: Atlas, motion: RootMotion
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Return the local heights, those the policy is told, and the margin."""
+    """Return the local heights, the heights that the policy observes, and the margin."""
     heights = env.local_heights(atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
     seen = jnp.clip(heights[:, : len(env.layout.points_in_root)], *env.height_range)
     return heights, seen, env.condition(heights, motion)

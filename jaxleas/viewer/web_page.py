@@ -1,4 +1,4 @@
-"""A page on which an exported policy walks by itself: static files, for any web host."""
+"""A page on which an exported policy walks: static files, for any web host."""
 
 from importlib import resources
 from pathlib import Path
@@ -20,7 +20,7 @@ from jaxleas.viewer.web_runtime import RUNTIME_FILES, runtime_folder
 
 SOURCES = ("walk.js", "page.js", "page.css", "index.html")
 MOST_CELLS = 4_000_000
-"""A visitor downloads four bytes a cell."""
+"""Maximum number of cells of the terrain: a visitor downloads four bytes per cell."""
 
 
 def page_of(
@@ -43,15 +43,15 @@ def write_page(
     start: tuple[float, float, float] | None = None,
     runtime: Path | None = None,
 ) -> None:
-    """Write the page: open `index.html` through any web server.
+    """Write the page, whose `index.html` opens through any web server.
 
     Args:
-        folder: gets some ten files, one of them onnxruntime (14 MB).
+        folder: folder to write about ten files to, one of them onnxruntime (14 MB).
         policy: content of an ONNX file.
-        config: of the policy.
-        terrain: to walk on.
-        start: x, y [m] and heading [deg]; by default a place with room around it.
-        runtime: the `dist` folder of onnxruntime-web, if npm is not to fetch it.
+        config: configuration of the policy's environment.
+        terrain: height map to walk on.
+        start: start x, y [m] and heading [deg]; by default a place with room around it.
+        runtime: the `dist` folder of onnxruntime-web, to use instead of fetching it with npm.
 
     Raises:
         InputError: the terrain is too large or the start invalid, the page cannot make the policy's
@@ -76,14 +76,14 @@ def write_page(
     write_bytes(folder / "policy.onnx", policy)
     write_bytes(folder / "heights.bin", terrain.heights.astype("<f4").tobytes())
     write_json(folder / "page.json", page_description(config, env.robot, terrain, pose))
-    for name in SOURCES:  # index.html last: a page that can be opened is whole
+    for name in SOURCES:  # index.html last: a page that opens is complete
         write_bytes(folder / name, (resources.files("jaxleas.viewer") / "page" / name).read_bytes())
 
 
 def page_description(
     config: SteeringConfig, robot: Robot, terrain: HeightMap, start: Pose
 ) -> dict[str, Any]:
-    """Return what the page's scripts must know, as `page.json` holds it."""
+    """Return the description of the page for its scripts, which `page.json` holds."""
     stated = describe_steering(config)
     low = np.min([box.low for box in robot.trunk], axis=0)
     high = np.max([box.high for box in robot.trunk], axis=0)

@@ -16,16 +16,16 @@ PACKAGE, VERSION = "onnxruntime-web", "1.30.0"
 INTEGRITY = (
     "q0y+JrrtukXSzsBWEMccVfqX25LRmosXHF+CaRJmg8pZClzcV7svNc4rKY3jL02Vb7QmRMDs1SigqR4CXAfKYQ=="
 )
-"""SHA-512 of the package, as npm states it."""
+"""SHA-512 of the package, in npm's notation."""
 RUNTIME_FILES = ("ort.wasm.bundle.min.mjs", "ort-wasm-simd-threaded.wasm")
-SECONDS = 300  # after which a download is given up
+SECONDS = 300  # time limit of a download
 
 
 def runtime_folder(given: Path | None = None) -> Path:
-    """Return a folder that holds onnxruntime for browsers, fetched with npm where it is not kept.
+    """Return a folder with onnxruntime for browsers, fetched with npm if it is not cached.
 
     Args:
-        given: the `dist` folder of the npm package, to be used instead.
+        given: the `dist` folder of the npm package, to use instead.
 
     Raises:
         InputError: the folder lacks a file, or npm is missing or fails.
@@ -44,7 +44,7 @@ def runtime_folder(given: Path | None = None) -> Path:
 
 
 def kept_runtime() -> Path:
-    """Return where the runtime is kept once it has been fetched."""
+    """Return the folder in which a fetched runtime is kept."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return base / "jaxleas" / f"{PACKAGE}-{VERSION}"
 
@@ -85,5 +85,5 @@ def _unpack(package: Path, cache: Path) -> None:
     with tarfile.open(package) as archive:
         for name in RUNTIME_FILES:
             member = archive.extractfile(f"package/dist/{name}")
-            assert member is not None  # the digest above says that it is there
+            assert member is not None  # the digest above implies that the file is there
             write_bytes(cache / name, member.read())

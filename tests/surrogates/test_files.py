@@ -63,7 +63,7 @@ def break_metadata(change):
         (break_metadata(lambda m: m["identity"].update(colour=1)), "identity.colour"),
         (break_metadata(lambda m: m["identity"]["parameters"].clear()), "keep_every"),
         (lambda a: a.update(encoder=a["encoder"][1:]), "encoder of shape"),
-        (lambda a: a.update(head=a["head"] * np.nan), "head holds what is no finite number"),
+        (lambda a: a.update(head=a["head"] * np.nan), "head holds values that are not finite"),
         (lambda a: a.pop("gates"), "gates"),
     ],
 )
@@ -173,7 +173,7 @@ def changed(labelled, tmp_path, change):
     [
         (lambda c: c["provenance"].update(robot="atlas"), "or on another robot, than"),
         (lambda c: c.update(version=1), "is of version 1; this jaxleas reads version 2"),
-        (lambda c: c["verdicts"][0].pop("last_index"), "is no verdict file"),
+        (lambda c: c["verdicts"][0].pop("last_index"), "is not a verdict file"),
     ],
 )
 def test_labels_of_another_robot_or_version_are_refused(labelled, tmp_path, change, sentence):

@@ -8,14 +8,14 @@ from jaxleas.types import InputError
 
 @dataclass
 class Budget:
-    """Runs out when the time is up or the connections are used up.
+    """A limit on the time of a search, on its connections, or on both.
 
-    Connections make two methods, or two machines, comparable; seconds are what a person waits.
+    A number of connections makes two methods, or two machines, comparable; seconds bound the wait.
 
     Attributes:
-        seconds: of wall time.
-        connections: that the search may ask for; None: as many as the time allows.
-        used: connections asked for so far.
+        seconds: wall time [s].
+        connections: maximum number of connections to try; None for as many as the time allows.
+        used: number of connections asked for so far.
     """
 
     seconds: float
@@ -31,7 +31,7 @@ class Budget:
 
     @property
     def elapsed(self) -> float:
-        """Since the budget was made [s]."""
+        """Time since the budget was made [s]."""
         return time.monotonic() - self._begin
 
     @property

@@ -16,17 +16,17 @@ from jaxleas.types import GuidePath, RootMotion, is_ground
 BATCH = 64
 """Connections walked in one compiled call: fewer leave the vector units idle."""
 MOST_STEPS = 4000
-"""Of a whole guide path: 13 minutes at 0.2 s, 80 m at 0.1 m/s."""
+"""Maximum number of steps of a whole guide path: 13 minutes at 0.2 s, 80 m at 0.1 m/s."""
 FEWEST_WAYPOINTS = 16
-"""Whole guide paths are compiled for so many, or a power of two times as many."""
+"""Whole guide paths are compiled for this number of waypoints, or a power of two times it."""
 
 
 @dataclass(frozen=True)
 class Tried:
-    """Connections that were tried.
+    """The answers to connections that were tried.
 
     Attributes:
-        reached: the target, valid all the way.
+        reached: whether the target was reached, valid all the way.
         arrival: root motion at the end.
     """
 
@@ -41,10 +41,10 @@ class Connector:
         """Prepare.
 
         Args:
-            places: of the terrain.
-            method: that walks; knowing the terrain or not.
-            radius: within which a target is reached [m].
-            steps: most that one connection may take.
+            places: places of the terrain where the robot can stand.
+            method: steering method, whether it knows the terrain or not.
+            radius: distance within which a target is reached [m].
+            steps: maximum number of steps of one connection.
         """
         self.places, self.method, self.radius, self.steps = places, method, radius, steps
 
@@ -52,8 +52,8 @@ class Connector:
         """Walk from each start to its target.
 
         Args:
-            starts: root motion, without a batch axis, of each robot.
-            targets: places to get to [m].
+            starts: root motion of each robot at its start, without a batch axis.
+            targets: target places x, y [m].
         """
         reached, arrivals = [], []
         for first in range(0, len(starts), BATCH):
@@ -72,19 +72,19 @@ class Connector:
     def follow(
         self, start: RootMotion, waypoints: Float[np.ndarray, "W 2"]
     ) -> tuple[GuidePath, bool, bool]:
-        """Walk one robot over all waypoints without stopping to think.
+        """Walk one robot through all waypoints in one roll-out.
 
         Args:
-            start: its root motion, without a batch axis.
-            waypoints: one after another, the goal last [m].
+            start: root motion at the start, without a batch axis.
+            waypoints: waypoints x, y in order, the goal last [m].
 
         Returns:
-            The guide path; whether it reached the goal; whether it ended invalid.
+            The guide path, whether it reached the goal, and whether it ended invalid.
         """
         size = FEWEST_WAYPOINTS
         while size < len(waypoints):
             size *= 2
-        # The last one repeated: it is reached as soon as it is asked for.
+        # The last waypoint is repeated: each copy is reached at once.
         repeated = np.concatenate([waypoints, np.repeat(waypoints[-1:], size - len(waypoints), 0)])
         motion = jax.tree.map(lambda leaf: np.asarray(leaf)[None], start)
         walked = self._walk(motion, self._lifted(repeated)[None], MOST_STEPS)

@@ -1,4 +1,4 @@
-"""The last word on a path: the exact conditions, on the polygons of its terrain."""
+"""The final check of a path: the exact conditions on the polygons of its terrain."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,17 +16,18 @@ from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.types import GuidePath, InputError, RootMotion
 
 NEAR = 0.1 * np.arange(1, 11)
-"""Distances at which a start that holds exactly is looked for [m]."""
+"""Distances at which an exactly valid start is sought [m]."""
 
 
 @dataclass(frozen=True)
 class ExactVerdict:
-    """What the exact conditions say of a path.
+    """The answer of the exact conditions for a path.
 
     Attributes:
-        configurations: of the path.
-        unreachable: of these, refused by R*: no leg reaches a surface under the root.
-        colliding: refused by C: a polygon meets the trunk.
+        configurations: number of configurations of the path.
+        unreachable: number of configurations that R* refuses: no leg reaches a surface under the
+            root.
+        colliding: number of configurations that C refuses: a polygon meets the trunk.
     """
 
     configurations: int
@@ -63,9 +64,9 @@ def refusals(
     """Return which configurations of a path the exact twins of R* and of C refuse.
 
     Args:
-        robot: that walks.
-        scene: whose surfaces carry, and whose polygons all block.
-        path: of the root.
+        robot: robot that walks.
+        scene: scene whose surfaces support contacts, and whose polygons all block.
+        path: guide path of the root.
     """
     reached = exact_strict_reachability(robot, scene.walkable.values(), path.position, path.yaw)
     free = exact_collision(robot, scene.polygons, path.position, path.yaw)
@@ -76,9 +77,9 @@ def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
     """Count the configurations of a path that the exact twins of R* and C refuse.
 
     Args:
-        robot: that walks.
-        scene: whose surfaces carry, and whose polygons all block.
-        path: of the root.
+        robot: robot that walks.
+        scene: scene whose surfaces support contacts, and whose polygons all block.
+        path: guide path of the root.
     """
     unreachable, colliding = refusals(robot, scene, path)
     return ExactVerdict(len(path), int(unreachable.sum()), int(colliding.sum()))
@@ -88,13 +89,13 @@ def require_exact_start(places: Places, scene: Scene, start: RootMotion) -> None
     """Require that the exact conditions hold where a robot starts.
 
     Args:
-        places: of the terrain.
-        scene: its polygons.
-        start: root motion, without a batch axis; valid on the height map.
+        places: places of the terrain where the robot can stand.
+        scene: polygons of the terrain.
+        start: root motion without a batch axis, valid on the height map.
 
     Raises:
-        InputError: one does not; says which, and the nearest pose, on rings of 0.1 m, that is valid
-            by both.
+        InputError: a condition does not hold; the message says which, and gives the nearest pose
+            on rings of 0.1 m that is valid both exactly and on the height map.
     """
     x, y, _ = (float(each) for each in start.position)
     yaw = float(start.yaw)

@@ -1,4 +1,4 @@
-"""What is known of connections: asked for one at a time by a search, tried many at a time."""
+"""Connections with their answers: a search asks for one at a time, and batches are tried."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -10,23 +10,24 @@ from jaxleas.guide.roadmaps.connections import BATCH, Connector, one
 from jaxleas.types import RootMotion
 
 Key = tuple[float, float]
-"""A place, rounded so that it is found again [m]."""
+"""A place, rounded so that equal places have equal keys [m]."""
 
 
 def key_of(place: Sequence[float] | np.ndarray) -> Key:
-    """Return a place as a key; to a nanometre."""
+    """Return a place as a key, rounded to a nanometre."""
     return round(float(place[0]), 9), round(float(place[1]), 9)
 
 
 @dataclass(frozen=True)
 class Question:
-    """Can a robot that stands at `origin` as `motion` says get to `target`?
+    """The question whether a robot at `origin` that moves with `motion` gets to `target`.
 
     Attributes:
-        origin: place it stands at.
+        origin: place where the robot starts.
         target: place to get to.
-        motion: of its root at the start.
-        arrived_by: which answered question brought it to `origin`; -1: it began there, or any did.
+        motion: root motion at the start.
+        arrived_by: number of the answer that brought the robot to `origin`; -1 if it began there or
+            if the way it arrived does not matter.
     """
 
     origin: Key
@@ -37,11 +38,11 @@ class Question:
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether the target was reached, and how the robot arrived there.
+    """The answer to a question.
 
     Attributes:
-        number: of the answer; counts up.
-        reached: the target, valid all the way.
+        number: number of the answer, in order.
+        reached: whether the target was reached, valid all the way.
         arrival: root motion at the end.
     """
 
@@ -52,17 +53,17 @@ class Answer:
 
 @dataclass
 class Ledger:
-    """Answers by question; a miss is answered together with guesses of what comes next.
+    """Answers by question; a new question is answered together with guesses of the next ones.
 
     A search asks for one connection, and the next question depends on the answer. A batch of
-    `BATCH` connections takes hardly longer than one, though: so each miss is tried beside the
-    questions that will probably follow.
+    `BATCH` connections takes hardly longer than one, though: so each new question is tried together
+    with the questions that will probably follow.
 
     Attributes:
-        connector: that tries connections.
-        budget: from which each question asked (not each guess) is taken once.
+        connector: connector that tries connections.
+        budget: budget that pays once for each question asked, and not for guesses.
         banned: connections that failed when a whole path was followed.
-        tried: connections walked, guesses included.
+        tried: number of connections walked, guesses included.
     """
 
     connector: Connector
@@ -76,8 +77,9 @@ class Ledger:
         """Return the answer to a question.
 
         Args:
-            question: to be answered.
-            guesses: makes the questions that may come next; called only on a miss.
+            question: question to answer.
+            guesses: function that returns the questions that may come next; called only for a new
+                question.
         """
         name = _name(question)
         if name not in self._asked:

@@ -1,4 +1,4 @@
-"""From start to goal by any steering method, with waypoints where it needs them."""
+"""Guide paths from start to goal by any steering method, with waypoints where it needs them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,22 +18,22 @@ from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
 from jaxleas.types import GuidePath, RootMotion
 
 SHORTENINGS = 8
-"""Shorter ways that are tried, at most: each is walked as a whole."""
+"""Maximum number of shorter ways that are tried; each is walked as a whole."""
 PlannerName = Literal["rrt", "prm", "none"]
 Refused = Callable[[GuidePath], Bool[np.ndarray, " T"]]
-"""Tells which configurations of a path are refused after all."""
+"""A function that returns which configurations of a path the exact conditions refuse."""
 
 
 @dataclass(frozen=True)
 class Navigation:
-    """How one query was answered.
+    """The answer to one query.
 
     Attributes:
-        path: to the goal, or the best partial one.
-        reason: "reached"; else why the path ends.
-        waypoints: places the robot was sent to, one after another, the goal last [m].
-        connections: that the search asked for.
-        seconds: it took.
+        path: guide path to the goal, or the best partial one.
+        reason: "reached", or the reason why the path ends elsewhere.
+        waypoints: waypoints of the robot in order, the goal last [m].
+        connections: number of connections that the search asked for.
+        seconds: duration of the search [s].
     """
 
     path: GuidePath
@@ -53,10 +53,10 @@ class Navigator:
     """A steering method and a search for the waypoints it needs.
 
     Attributes:
-        connector: the steering method on its terrain.
-        planner: that looks for waypoints; "none": the goal alone.
-        reach: length of an edge of a tree at most [m].
-        refused: asked about every whole path: the exact conditions, where there are polygons.
+        connector: steering method on its terrain.
+        planner: planner that searches for waypoints; "none" only tries the goal directly.
+        reach: maximum length of an edge of a tree [m].
+        refused: exact check of every whole path, if the terrain has polygons.
     """
 
     connector: Connector
@@ -67,16 +67,16 @@ class Navigator:
     def navigate(
         self, start: RootMotion, goal: Float[np.ndarray, " 2"], budget: Budget, seed: int = 0
     ) -> Navigation:
-        """Find a guide path to the goal; without waypoints if there is one.
+        """Find a guide path to the goal, without waypoints if possible.
 
         A path is returned as reached only after the steering method has followed it from start to
-        goal without a break; a connection that fails then is taken out, and the search goes on.
+        goal without a break; a connection that fails then is removed, and the search continues.
 
         Args:
-            start: root motion, without a batch axis.
-            goal: x, y [m].
-            budget: after which the best partial path is returned.
-            seed: of the search.
+            start: root motion at the start, without a batch axis.
+            goal: goal x, y [m].
+            budget: limit of the search, after which the best partial path is returned.
+            seed: random seed of the search.
         """
         goal = np.asarray(goal, dtype=np.float64)
         budget.used += 1
@@ -100,7 +100,7 @@ class Navigator:
     def _search(
         self, ledger: Ledger, start: RootMotion, goal: np.ndarray, seed: int
     ) -> list[Key] | None:
-        # Begun anew with the same samples: what was tried before is remembered by the ledger.
+        # Begin again with the same samples: the ledger has the answers to what was tried before.
         places = self.connector.places
         target = key_of(goal)
         if self.planner == "rrt":
@@ -110,7 +110,7 @@ class Navigator:
         return search_prm(Prm(ledger, Samples(places, seed), (here, target)), here, target)
 
     def _shortened(self, start: RootMotion, whole: Navigation, budget: Budget) -> Navigation:
-        """Leave out waypoints: the fewest that still lead there, if the method follows them."""
+        """Return a path through fewer waypoints, the fewest that the method can still follow."""
         count = len(whole.waypoints)
         if count == 1:
             return whole
@@ -134,12 +134,12 @@ class Navigator:
                 return shorter
             failed = self._failed(shorter, waypoints)
             jumps.remove_edge(kept[failed], kept[failed + 1])
-            # Of the way that is known to work every step stays.
+            # Every step of the way that is known to work stays.
             jumps.add_edges_from((i, i + 1) for i in range(count))
         return whole
 
     def _failed(self, walked: Navigation, waypoints: np.ndarray) -> int:
-        """Return on the way to which waypoint a walk over all of them failed."""
+        """Return the index of the first waypoint that a walk through all of them did not reach."""
         passed = passages(walked.path, waypoints, self.connector.radius)
         return min(len(passed), len(waypoints) - 1)
 
@@ -151,7 +151,7 @@ class Navigator:
         direct: Navigation,
         budget: Budget,
     ) -> Navigation:
-        """Return the valid path that ends nearest to the goal, of all that are known."""
+        """Return the known valid path that ends nearest to the goal."""
         known = networkx.DiGraph(ledger.reached())
         here = key_of(np.asarray(start.position))
         candidates = [direct]
@@ -160,7 +160,7 @@ class Navigator:
             nearest = min(ways, key=lambda place: float(np.hypot(*(np.array(place) - goal))))
             if len(ways[nearest]) > 1:
                 way = self._followed(start, np.array(ways[nearest][1:]), budget)
-                if way.reached and nearest == key_of(goal):  # a guess of the ledger's, unasked
+                if way.reached and nearest == key_of(goal):  # one of the ledger's guesses
                     return self._shortened(start, way, budget)
                 candidates.append(way)
         best = min(
@@ -185,9 +185,9 @@ def passages(
     """Return when each waypoint was passed, in order, up to the first that was not.
 
     Args:
-        path: that was walked.
-        waypoints: one after another [m].
-        radius: within which one is passed [m].
+        path: guide path that was walked.
+        waypoints: waypoints x, y in order [m].
+        radius: distance within which a waypoint is passed [m].
 
     Returns:
         Indices of configurations.

@@ -1,4 +1,4 @@
-"""The places that a search tries: drawn in blocks, read one by one, known in advance."""
+"""The places that a search tries: drawn in blocks, read one by one, and known in advance."""
 
 import numpy as np
 from jaxtyping import Float
@@ -7,7 +7,7 @@ from jaxleas.guide.places import Places
 
 BLOCK = 256
 GOAL_EVERY = 20
-"""Each so manieth place is the goal itself, where the search asks for that: a bias of 5 %."""
+"""One place in this number is the goal itself, if the search wants that: a bias of 5 %."""
 
 
 class Samples:
@@ -17,9 +17,9 @@ class Samples:
         """Prepare.
 
         Args:
-            places: that can be stood at.
-            seed: of the list.
-            goal: to be put in between, if at all [m].
+            places: places where the robot can stand.
+            seed: random seed of the list.
+            goal: goal x, y to insert now and then; None for no goal [m].
         """
         self._places, self._goal = places, goal
         self._rng = np.random.default_rng(seed)

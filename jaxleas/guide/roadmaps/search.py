@@ -1,8 +1,8 @@
-"""RRT and PRM by OMPL, over places whose connections a steering method decides.
+"""RRT and PRM by OMPL over places whose connections a steering method decides.
 
 OMPL asks one question at a time; the ledger answers it from a batch. For that the next samples must
-be known, so OMPL takes them from us: PRM from a valid-state sampler, RRT (whose binding has no
-such place) from the goal's own sampler with a goal bias of 1.
+be known, so this module supplies them: to PRM by a valid-state sampler, to RRT (whose binding does
+not accept one) by the goal's own sampler with a goal bias of 1.
 """
 
 from collections.abc import Sequence
@@ -18,17 +18,17 @@ from jaxleas.guide.roadmaps.samples import Samples
 from jaxleas.types import JaxleasError, RootMotion
 
 NEIGHBOURS = 8
-"""Of a new place in a PRM, as many are tried."""
+"""Number of neighbours of a new place that a PRM tries to connect."""
 GROW = 32
-"""Places by which a PRM grows between two looks whether it holds a path."""
+"""Number of places by which a PRM grows between two checks for a path."""
 SAME = 1e-6  # [m]
 
 
 def import_ompl() -> tuple[Any, Any]:
-    """Return OMPL's modules `base` and `geometric`, told to be quiet.
+    """Return OMPL's modules `base` and `geometric`, set to log errors only.
 
     Raises:
-        JaxleasError: it is not installed.
+        JaxleasError: OMPL is not installed.
     """
     try:
         from ompl import base, geometric, util
@@ -41,16 +41,16 @@ def import_ompl() -> tuple[Any, Any]:
 
 
 class Rrt:
-    """A tree of arrivals: each edge begins where, and as fast as, the one before it ended."""
+    """A tree of arrivals: each edge begins with the root motion at the end of the one before it."""
 
     def __init__(self, ledger: Ledger, samples: Samples, start: RootMotion, reach: float):
         """Prepare.
 
         Args:
-            ledger: that knows the connections.
-            samples: places to grow towards; hold the goal now and then.
-            start: root motion, without a batch axis.
-            reach: length of an edge at most [m].
+            ledger: ledger of the connections.
+            samples: places to grow towards, among them the goal now and then.
+            start: root motion at the start, without a batch axis.
+            reach: maximum length of an edge [m].
         """
         self.ledger, self.samples, self.reach = ledger, samples, reach
         self.start = key_of(np.asarray(start.position))
@@ -58,9 +58,9 @@ class Rrt:
         self.nodes = [np.array(self.start)]
 
     def connects(self, origin: Key, target: Key) -> bool:
-        """Tell whether the robot that arrived at `origin` gets to `target`; if so, it joins."""
+        """Return whether the robot that arrived at `origin` gets to `target`, which then joins."""
         if target in self.motions:
-            return False  # it is in the tree
+            return False  # the target is already in the tree
         answer = self.ledger.ask(self._question(origin, target), self._guesses)
         if answer.reached:
             self.motions[target] = (answer.number, answer.arrival)
@@ -72,7 +72,7 @@ class Rrt:
         return Question(origin, target, motion, number)
 
     def _guesses(self) -> list[Question]:
-        """Return the edges towards the samples ahead, if the tree stays as it is."""
+        """Return the edges towards the next samples, as if the tree stayed as it is."""
         nodes, ahead = np.array(self.nodes), self.samples.ahead(BATCH)
         distance = np.linalg.norm(ahead[:, None] - nodes[None], axis=-1)
         nearest = distance.argmin(axis=1)
@@ -87,28 +87,28 @@ class Rrt:
 
 
 class Prm:
-    """A net of places; each edge works both ways, begun at rest and facing its end."""
+    """A roadmap of places; each edge works both ways, from rest and facing its end."""
 
     def __init__(self, ledger: Ledger, samples: Samples, ends: Sequence[Key]):
         """Prepare.
 
         Args:
-            ledger: that knows the connections.
-            samples: places to join.
-            ends: start and goal, the first places of the net.
+            ledger: ledger of the connections.
+            samples: places that join the roadmap.
+            ends: start and goal, the first places of the roadmap.
         """
         self.ledger, self.samples = ledger, samples
         self.nodes = [np.array(each) for each in ends]
         self.edges: set[tuple[Key, Key]] = set()
 
     def join(self) -> Float[np.ndarray, " 2"]:
-        """Return the next place, which joins the net."""
+        """Return the next place, which joins the roadmap."""
         place = self.samples.next()
         self.nodes.append(place)
         return place
 
     def connects(self, origin: Key, target: Key) -> bool:
-        """Tell whether a robot gets from either place to the other."""
+        """Return whether a robot gets from either place to the other."""
         there, back = self._questions(origin, target)
         works = (
             self.ledger.ask(there, lambda: [back, *self._guesses()]).reached
@@ -127,7 +127,7 @@ class Prm:
         return Question(origin, target, there), Question(target, origin, back)
 
     def _guesses(self) -> list[Question]:
-        """Return the edges of the newest place and of those that will join next."""
+        """Return the edges of the newest place and of the places that will join next."""
         ahead = self.samples.ahead(BATCH // NEIGHBOURS)
         nodes = np.concatenate([np.array(self.nodes), ahead])
         guesses: list[Question] = []
@@ -146,7 +146,7 @@ def search_rrt(rrt: Rrt, goal: Key) -> list[Key] | None:
     """Grow a tree until it holds the goal or the budget is spent.
 
     Returns:
-        Places from start to goal, both included, or None.
+        The places from start to goal, both included, or None.
     """
     base, geometric = import_ompl()
 
@@ -176,10 +176,10 @@ def search_rrt(rrt: Rrt, goal: Key) -> list[Key] | None:
 
 
 def search_prm(prm: Prm, start: Key, goal: Key) -> list[Key] | None:
-    """Grow a net until it joins start and goal or the budget is spent.
+    """Grow a roadmap until it joins start and goal or the budget is spent.
 
     Returns:
-        Places from start to goal, both included, or None.
+        The places from start to goal, both included, or None.
     """
     base, geometric = import_ompl()
 
@@ -203,7 +203,7 @@ def search_prm(prm: Prm, start: Key, goal: Key) -> list[Key] | None:
     planner.setProblemDefinition(problem)
     planner.setup()
     budget = prm.ledger.budget
-    planner.solve(base.plannerAlwaysTerminatingCondition())  # start and goal join the net
+    planner.solve(base.plannerAlwaysTerminatingCondition())  # start and goal join the roadmap
     while not budget.spent:
         enough = prm.samples.position + GROW
         planner.growRoadmapPtc(
@@ -212,7 +212,7 @@ def search_prm(prm: Prm, start: Key, goal: Key) -> list[Key] | None:
             )
         )
         if _joined(prm, start, goal):
-            # OMPL looks for the path in a thread of its own, and grows on until it has it.
+            # OMPL searches for the path in a separate thread, and keeps growing until it has one.
             planner.solve(base.timedPlannerTerminationCondition(1.0))
             return _solution(problem)
     return None

@@ -55,7 +55,7 @@ async function frame(now) {
   for (clock += state === "walking" ? seconds : 0; clock >= interval; clock -= interval) {
     const was = motion;
     const next = await step(ort, session, task, terrain, was, goal);
-    if (was !== motion || state !== "walking") break; // somebody began again meanwhile
+    if (was !== motion || state !== "walking") break; // the user began again meanwhile
     [before, motion] = [was, next];
     trail.push(motion.position);
     since = Math.hypot(...motion.velocity) < SLOWEST ? since + interval : 0;

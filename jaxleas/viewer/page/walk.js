@@ -3,7 +3,7 @@
 
 const NO_GROUND = -1e4;
 
-/** A height map: one height a cell, row = y, column = x; NaN = no ground. */
+/** A height map: one height per cell, row = y, column = x; NaN = no ground. */
 export class Terrain {
   constructor({ rows, columns, resolution, origin }, heights) {
     Object.assign(this, { rows, columns, resolution, origin, heights });
