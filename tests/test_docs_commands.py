@@ -161,7 +161,7 @@ class Runner:
         self._patch = monkeypatch
         monkeypatch.setattr("jaxleas.training.loop.train", self._replay)
         # Judging, export and report after it are commands of their own.
-        monkeypatch.setattr("train._conclude", lambda config, run: None)
+        monkeypatch.setattr("train._conclude", lambda config, run, allow: None)
 
     def sh(self, line: str) -> None:
         self.ran += 1

@@ -88,7 +88,7 @@ def test_batches_are_the_stream_row_by_row_and_nothing_is_lost_or_doubled():
         while (batch := stream.batch()) is not None:
             experience, after = to_experience(batch, rows, unroll)
             assert experience.reward.shape == (unroll, rows)
-            walked = np.asarray(experience.location[..., 0])
+            walked = np.asarray(experience.distributions[0].location[..., 0])
             taken += [walked[t, r] for r in range(rows) for t in range(unroll)]
             for r in range(rows):
                 follows = batch["observation"][(r + 1) * unroll]

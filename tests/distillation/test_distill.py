@@ -108,7 +108,8 @@ def test_practice_may_ask_for_another_speed_and_reward(start):
     assert practice.ppo.steps == 4096
     # Failing is as dear at the end as at the beginning.
     assert practice.env.reward.failure == practice.env.reward.final_failure == 20.0
-    kept = config.env.reward.model_dump() | {"direction": 12.0, "failure": 20.0}
+    failing = {"failure": 20.0, "final_failure": 20.0}
+    kept = config.env.reward.model_dump() | {"direction": 12.0, **failing}
     assert practice.env.reward.model_dump() == kept
 
 

@@ -8,7 +8,7 @@ from jaxleas.distillation.walking import before_first, walk_from_starts
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import draw_starts, take
+from jaxleas.envs.steering.starts import begin
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
@@ -34,7 +34,7 @@ def test_a_walk_is_what_the_task_does_step_by_step():
     walked = jax.jit(
         lambda: walk_from_starts(ENV, world, (draw_key, take_key), WEIGHTS, act, noise)
     )()
-    episode, observation = take(draw_starts(ENV, world, draw_key, 32), take_key, 16)
+    episode, observation = begin(ENV, world, (draw_key, take_key), 16, of=32)
     going = np.ones(16, bool)
     for step, noise_now in enumerate(noise):
         np.testing.assert_allclose(walked.motion.yaw[:, step], episode.motion.yaw, atol=1e-5)

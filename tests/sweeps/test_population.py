@@ -19,7 +19,7 @@ from jaxleas.sweeps.population_config import Members, open_population
 from jaxleas.sweeps.population_folder import hold_population
 from jaxleas.sweeps.population_loop import train_population
 from jaxleas.training.loop import InterruptedRunError, train
-from jaxleas.training.ppo_params import SWEPT_FIELDS, PpoParams
+from jaxleas.training.ppo_params import PpoParams, swept_fields
 from jaxleas.types import InputError
 from tests.sweeps.files import write_population
 from tests.training.runs import tiny
@@ -62,9 +62,9 @@ def rows_of(run):
 
 def test_every_number_that_vectorises_is_in_the_pytree():
     """All of them differ from the default here, and each changes what `PpoParams` holds."""
-    assert {*OTHER} == {*SWEPT_FIELDS, "seed"}
+    assert {*OTHER} == {*swept_fields(tiny().env), "seed"}
     plain = jax.tree.leaves(PpoParams.of(tiny()))
-    for name in SWEPT_FIELDS:
+    for name in swept_fields(tiny().env):
         changed = jax.tree.leaves(PpoParams.of(with_values(tiny(), {name: OTHER[name]}, "test")))
         assert any(float(a) != float(b) for a, b in zip(plain, changed, strict=True)), name
 

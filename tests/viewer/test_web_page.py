@@ -13,7 +13,7 @@ import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.motion import integrate
-from jaxleas.export import build_onnx, web_runtime
+from jaxleas.export import build_onnx
 from jaxleas.export.commands import export
 from jaxleas.export.write import described
 from jaxleas.guide.commands import walk_queries
@@ -22,6 +22,7 @@ from jaxleas.guide.standing import Pose
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError, Query, RootMotion
+from jaxleas.viewer import web_runtime
 from jaxleas.viewer.web_page import page_description, write_page
 from jaxleas.viewer.web_runtime import RUNTIME_FILES, kept_runtime, runtime_folder
 from tests.browser import chromium, served
@@ -133,7 +134,7 @@ def in_node(given, tmp_path):
     script = tmp_path / "replay.mjs"
     script.write_text(REPLAY, encoding="utf-8")
     module = tmp_path / "walk.mjs"  # node takes a lone .js for CommonJS
-    module.write_bytes((resources.files("jaxleas.export") / "page" / "walk.js").read_bytes())
+    module.write_bytes((resources.files("jaxleas.viewer") / "page" / "walk.js").read_bytes())
     done = subprocess.run(
         ["node", str(script), str(module)],
         input=json.dumps(given, allow_nan=False),
