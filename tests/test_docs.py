@@ -90,7 +90,7 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
         case ["jaxleas", *arguments]:
             assert parse_jaxleas(arguments, monkeypatch), line
         case ["python", "train.py", *arguments]:
-            parse_train(arguments, monkeypatch)
+            parse_train(arguments, page, monkeypatch)
         case ["python", "-m", "venv", *_]:
             pass
         case ["python", "-m", module, *arguments]:
@@ -131,12 +131,14 @@ def parse_jaxleas(arguments: list[str], monkeypatch) -> list[dict]:
     return given
 
 
-def parse_train(arguments: list[str], monkeypatch) -> None:
+def parse_train(arguments: list[str], page: Path, monkeypatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT))
     given, overrides = importlib.import_module("train")._parser().parse_known_args(arguments)
     assert (given.config is None) != (given.resume is None)
     if given.config is not None:
         overrides = [each for each in overrides if each != "--help"]
+        if f"<!-- file: {given.config} -->" in page.read_text(encoding="utf-8"):
+            return  # the page's own: read where it is run
         load_run_config(ROOT / given.config, overrides)
     else:
         assert not overrides

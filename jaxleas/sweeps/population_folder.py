@@ -69,7 +69,10 @@ def hold_population(path: Path, members: Members) -> Iterator[list[Path]]:
 def _configs(file: Path, record: _Record, members: Members) -> list[AnyRun]:
     """Return a record's configurations; fields newer than its file have their defaults."""
     what = f"{file} is no record of a population"
-    return [parse_run_config(each, what, members.allow) for each in record.members]
+    return [
+        parse_run_config(each, f"{what}: members.{number}", members.allow)
+        for number, each in enumerate(record.members)
+    ]
 
 
 def _read(file: Path) -> _Record:

@@ -3,6 +3,7 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 from jaxleas.distillation.walking import before_first, walk_from_starts
 from jaxleas.envs.steering.config import SteeringConfig
@@ -23,6 +24,7 @@ def test_steps_before_the_first_flag_and_this_one_are_before_it():
     np.testing.assert_array_equal(before_first(jnp.asarray(flag)), slow)
 
 
+@pytest.mark.slow
 def test_a_walk_is_what_the_task_does_step_by_step():
     world = make_world([generate_arena(GeneratorConfig(rows=3, columns=3), 0)], resolution=0.05)
     draw_key, take_key, noise_key = jax.random.split(jax.random.key(3), 3)

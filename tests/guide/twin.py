@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from jaxleas.training.networks.mlp import layers_of
+
 LAYOUT_ROWS = [-0.425, -0.255, -0.085, 0.075, 0.225, 0.375, 0.525, 0.675, 0.825, 0.975]
 LAYOUT_COLUMNS = [0.09 * (index - 6.5) for index in range(14)]
 TRUNK_X = np.linspace(-0.2, 0.133, 4)
@@ -54,10 +56,11 @@ class Twin:
         limits = self.policy.config.limits
         value = (observation - np.asarray(self.policy.mean)) / np.asarray(self.policy.deviation)
         value = np.minimum(np.maximum(value, -10), 10)
-        last = len(self.policy.kernels) - 1
+        layers = layers_of(self.policy.params)
+        last = len(layers) - 1
         for index in range(last + 1):
-            value = np.asarray(self.policy.kernels[index], float).T @ value
-            value = value + np.asarray(self.policy.biases[index], float)
+            value = np.asarray(layers[index][0], float).T @ value
+            value = value + np.asarray(layers[index][1], float)
             if index < last:
                 value = np.where(value > 0, value, 0.0)
         action = np.tanh(value[:4])

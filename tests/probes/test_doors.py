@@ -24,7 +24,7 @@ from jaxleas.types import InputError
 from .configs import DRIFT, MAZE, write
 
 ROOT = Path(__file__).resolve().parents[2]
-BOTH = pytest.mark.parametrize("task", [DRIFT, MAZE])
+BOTH = pytest.mark.parametrize("task", [pytest.param(DRIFT, marks=pytest.mark.slow), MAZE])
 
 
 def train(*arguments: object, **options) -> subprocess.CompletedProcess:
@@ -35,15 +35,24 @@ def train(*arguments: object, **options) -> subprocess.CompletedProcess:
     )
 
 
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory) -> dict[str, Path]:
-    """Both probes, trained and exported by the command that trains steering."""
-    folder, found = tmp_path_factory.mktemp("probes"), {}
-    for task in (DRIFT, MAZE):
-        found[task] = folder / task.rpartition(":")[2]
-        done = train(write(folder, task), "--run-dir", found[task], "--allow", task)
+class Runs(dict):
+    """Run folders of the probes, each trained and exported when it is first asked for."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self.folder = folder
+
+    def __missing__(self, task: str) -> Path:
+        self[task] = self.folder / task.rpartition(":")[2]
+        done = train(write(self.folder, task), "--run-dir", self[task], "--allow", task)
         assert done.returncode == 0, done.stderr
-    return found
+        return self[task]
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory) -> Runs:
+    """Both probes, trained by the command that trains steering."""
+    return Runs(tmp_path_factory.mktemp("probes"))
 
 
 @BOTH

@@ -64,7 +64,7 @@ def test_the_memory_of_a_sweep(tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda record: record["members"][0].update(seed="x"), r"members.0.seed: "),
+        (lambda record: record["members"][0].update(seed="x"), r"members.0: seed is "),
         (lambda record: record.pop("vary"), "vary: Field required"),
         (lambda record: record.update(version=9), "of version 9"),
     ],

@@ -112,6 +112,7 @@ def test_a_resolved_configuration_finds_its_files_and_notices_a_change(folder, m
 
 
 @pytest.mark.usefixtures("brax_ranks")
+@pytest.mark.slow
 def test_a_resumed_run_on_files_equals_one_left_in_peace(folder):
     config = pinned(config_with(folder, files=["yard.npz"], files_share=0.5))
 
@@ -175,20 +176,20 @@ class Level:
 def test_code_that_a_file_names_is_run_with_permission_only(folder, monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT))
     monkeypatch.setattr(sys, "path", list(sys.path))
-    (folder / "level_ground.py").write_text(OWN)
-    stated = tiny_training(2) | {"env": {"conditions": ["collision", "level_ground:Level"]}}
+    (folder / "only_here_level.py").write_text(OWN)
+    stated = tiny_training(2) | {"env": {"conditions": ["collision", "only_here_level:Level"]}}
     (folder / "run.yaml").write_text(yaml.safe_dump(stated))
     train_py = importlib.import_module("train")
-    with pytest.raises(InputError, match="--allow level_ground:Level"):
+    with pytest.raises(InputError, match="--allow only_here_level:Level"):
         train_py.main(["run.yaml", "--run-dir", "run"])
     assert not (folder / "run").exists()
     config = load_run_config("run.yaml")
     with RunFolder.create("run", to_yaml(config), ["test"]):
         pass
-    with pytest.raises(InputError, match="--allow level_ground:Level"):
+    with pytest.raises(InputError, match="--allow only_here_level:Level"):
         train_py.main(["--resume", "run"])
-    assert "level_ground" not in sys.modules
-    trainer = Trainer(config, make_task(config, ["level_ground:Level"]))
-    assert "level_ground" in sys.modules
+    assert "only_here_level" not in sys.modules
+    trainer = Trainer(config, make_task(config, ["only_here_level:Level"]))
+    assert "only_here_level" in sys.modules
     np.testing.assert_array_equal(trainer.task.env.points_in_root[-1], [0.5, 0.0])
-    sys.modules.pop("level_ground")
+    sys.modules.pop("only_here_level")
