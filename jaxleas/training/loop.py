@@ -99,7 +99,7 @@ def train(
             trainer, run, checkpoints, log, progress, background, best, on_examined
         )
         _Session(trainer, interruption, recorder).run(state)
-    return read_policy(run.path / POLICY_FILE, of=type(config.env))
+    return read_policy(run.path / POLICY_FILE, of=config.env)
 
 
 def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> None:
@@ -164,7 +164,7 @@ def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, bes
     if best < 0.0:
         return best  # no policy was written yet
     try:
-        read_policy(run.path / POLICY_FILE, of=type(trainer.config.env))
+        read_policy(run.path / POLICY_FILE, of=trainer.config.env)
     except InputError as damage:
         try:
             step, state, _ = checkpoints.best(trainer.shapes)

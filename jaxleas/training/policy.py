@@ -116,14 +116,16 @@ def write_policy(path: str | Path, policy: Policy) -> None:
 
 
 def read_policy(
-    path: str | Path, allow: Collection[str] = (), of: type[TaskConfig] | None = None
+    path: str | Path,
+    allow: Collection[str] = (),
+    of: TaskConfig | type[TaskConfig] | None = None,
 ) -> Policy:
     """Read a policy.
 
     Args:
         path: path of the policy file.
         allow: user's own code that may be run, as MODULE:CLASS: here the policy's task.
-        of: type of the task's configuration, where only policies of that task are accepted.
+        of: a configuration of the task, or its type, where only policies of that task are accepted.
 
     Raises:
         InputError: the file is not a policy, is damaged, is of another format, or of a task whose
@@ -169,12 +171,15 @@ def read_policy(
 
 
 def _config(
-    path: str | Path, stated: Any, allow: Collection[str], of: type[TaskConfig] | None
+    path: str | Path,
+    stated: Any,
+    allow: Collection[str],
+    of: TaskConfig | type[TaskConfig] | None,
 ) -> TaskConfig:
     """Return the configuration of the task that a policy's file states."""
     task = stated.get("task", DEFAULT_TASK)
     if of is not None:
-        wanted = of.model_fields["task"].default
+        wanted = of.task if isinstance(of, TaskConfig) else of.model_fields["task"].default
         if task != wanted:
             raise InputError(f"{path} is a policy of the task {task}; one of {wanted} would do")
         return of.model_validate(stated)

@@ -12,6 +12,7 @@ from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of, read_policy, write_policy
 from jaxleas.types import InputError
 
+from ..probes.drift import DriftConfig
 from .test_loss import brax_networks
 
 
@@ -87,3 +88,14 @@ def test_a_policy_of_another_shape_or_format_is_refused(env, tmp_path):
     wrong = metadata | {"activation": "__import__"}
     with pytest.raises(InputError, match="activation"):
         read_policy(rewritten(metadata=np.array(json.dumps(wrong))))
+
+
+def test_a_policy_of_another_task_is_refused_where_one_task_is_wanted(env, tmp_path):
+    path = tmp_path / "policy.npz"
+    write_policy(path, make(env)[-1])
+    assert read_policy(path, of=SteeringConfig).config == env.config
+    assert read_policy(path, of=env.config).config == env.config
+    other = DriftConfig(task="renamed:Drift")  # a task may be named otherwise than by default
+    for wanted, said in ((DriftConfig, "tests.probes.drift:Drift"), (other, "renamed:Drift")):
+        with pytest.raises(InputError, match=f"of the task steering; one of {said} would do"):
+            read_policy(path, of=wanted)
