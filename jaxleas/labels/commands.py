@@ -40,24 +40,25 @@ def label(
 
     Args:
         guides: guide path files, .npz.
-        scene: that they walk on, .json; or an .stl or .obj mesh in metres, z up.
-        out: folder of the verdict files; the same command goes on where it was interrupted.
+        scene: scene that they cross, .json; or an .stl or .obj mesh in metres, z up.
+        out: folder of the verdict files; the same command continues where it was interrupted.
         planner: planner that judges.
         robot: robot that walks.
-        parameters: any settings of the planner, as longest_step=0.3.
-        keep_every: one configuration in so many is planned for; by default the planner's own.
-        samples: sampling: leg configurations in the data base, 25000 by default.
-        heuristic: sampling: by which candidates are tried, fixed_step by default.
-        seed: sampling: of the data base, 0 by default.
+        parameters: any settings of the planner, such as longest_step=0.3.
+        keep_every: plan for every N-th configuration; by default the planner's own number.
+        samples: sampling: number of leg configurations in the data base, 25000 by default.
+        heuristic: sampling: score that orders the candidates, fixed_step by default.
+        seed: sampling: seed of the data base, 0 by default.
         model: mip, sl1m: two_com (with the centre of mass, the default) or feet.
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
-        time_limit: mip, sl1m: for one guide path, 60 by default; then it stays undecided [s].
-        max_combinations: sl1m: after which it gives up, 2000 by default; 0: what the relaxation
-            leaves undecided fails.
-        weights: sl1m: of the slacks, uniform by default; guide: the guide path chooses.
-        processes: working at the same time; all cores by default.
-        workers: processes of this machine, or ray: the cluster that RAY_ADDRESS names.
+        time_limit: mip, sl1m: time limit per guide path, 60 by default; then it stays
+            undecided [s].
+        max_combinations: sl1m: number of combinations after which it gives up, 2000 by default;
+            0: a path that the relaxation leaves undecided fails.
+        weights: sl1m: weights of the slacks, uniform by default; guide: the guide path chooses.
+        processes: number of processes that work at the same time; all cores by default.
+        workers: processes on this machine, or ray: the cluster that RAY_ADDRESS names.
     """
     from time import perf_counter
 
@@ -90,7 +91,7 @@ def label(
     if processes is not None:
         require_count(processes)
     begun = perf_counter()
-    # Absolute: a worker elsewhere has another working folder.
+    # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
     oracle = Oracle(planner, settings, robot)
     shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
@@ -118,10 +119,10 @@ def label(
 
 
 def _held(out: Path) -> "FolderLock":
-    """Return a hold on the folder of verdicts: two that write it would judge all twice.
+    """Return a lock on the folder of verdicts: two writers would judge every path twice.
 
     Raises:
-        InputError: somebody else holds it, or it cannot be made.
+        InputError: another process holds the lock, or it cannot be made.
     """
     from jaxleas.files import FolderLock
 

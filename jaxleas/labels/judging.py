@@ -1,4 +1,4 @@
-"""A judge: many guide paths over many scenes in one call, over workers that stay (T 4.2)."""
+"""A judge: many guide paths over many scenes in one call, with persistent workers (T 4.2)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -21,8 +21,8 @@ PLANNER_MODULES = (
     "jaxleas.labels.planners",
     *(target.partition(":")[0] for target in PLANNERS.targets.values()),
 )
-"""What workers that ask exact planners import before they are forked."""
-_TASKS_EACH = 4  # for every worker, so that all end at about the same time
+"""Modules that workers of exact planners import before they are forked."""
+_TASKS_EACH = 4  # tasks per worker, so that all workers end at about the same time
 
 
 @dataclass(frozen=True)
@@ -66,12 +66,12 @@ class Judge:
         Args:
             planner: name of a planner, or MODULE:CLASS of your own, which this call imports.
             settings: settings of the planner; its defaults if None.
-            processes: number of processes at work; 1 works in this process.
+            processes: number of processes that work; 1 works in this process.
             workers: workers to use instead of processes.
             robot: name of the robot.
 
         Raises:
-            InputError: planner and settings do not fit, or there are no processes.
+            InputError: planner and settings do not fit, or the number of processes is below 1.
         """
         found = find_planner(planner, [planner])
         self.planner, self.robot, self._grain = planner, robot, found.grain
@@ -90,17 +90,17 @@ class Judge:
         After Ctrl-C the judge can be asked again.
 
         Args:
-            scenes: to walk on.
-            paths: to be judged.
-            scene_index: of each path's scene.
-            on_done: called with a number of guide paths whenever so many more are done.
+            scenes: scenes that the paths cross.
+            paths: guide paths to judge.
+            scene_index: index of each path's scene.
+            on_done: function called with the number of further guide paths that are done.
 
         Returns:
             Verdicts in the order of the paths, each with its number.
 
         Raises:
             InputError: a path or scene cannot be used, or the indices do not fit.
-            WorkerError: workers die over the same paths again and again.
+            WorkerError: workers die over the same paths repeatedly.
         """
         index = np.asarray(scene_index, dtype=np.int64)
         _require_fit(len(scenes), len(paths), index)
@@ -114,7 +114,7 @@ class Judge:
         return [verdict for verdict in verdicts if verdict is not None]
 
     def close(self) -> None:
-        """Let the workers go."""
+        """Release the workers."""
         self._workers.close()
 
     def __enter__(self) -> Self:
@@ -127,11 +127,11 @@ class Judge:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Let the workers go."""
+        """Release the workers."""
         self.close()
 
     def _groups(self, index: np.ndarray) -> list[np.ndarray]:
-        """Return the paths of each task: those over one scene together."""
+        """Return the paths of each task: paths over one scene stay together."""
         order = np.argsort(index, kind="stable")
         grain, count = self._grain, self._workers.count
         rounds = max(-(-len(index) // (grain.task * count)), 1 if grain.abreast else _TASKS_EACH)

@@ -1,4 +1,4 @@
-"""Many guide path files judged in parallel (T 4.2); what is done stays done."""
+"""Many guide path files judged in parallel (T 4.2); finished work is kept."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -19,10 +19,10 @@ def plan_shards(
 
     Args:
         guides: guide path files.
-        scene: scene file that they walk on.
+        scene: scene file that they cross.
         oracle: planner to ask.
         out: folder of the verdict files.
-        a_shard: guide paths per shard; as many as suit the planner if None.
+        a_shard: number of guide paths per shard; a number that suits the planner if None.
 
     Raises:
         InputError: a file cannot be used, two have the same name, or the settings do not fit.
@@ -49,7 +49,7 @@ def judge_shard(shard: Shard) -> int:
     """Judge one shard, write its file, and return the number of its guide paths.
 
     Only names and numbers reach a worker; it reads guide paths and scene itself. A shard whose
-    file is there already was written by a worker that died before it could say so.
+    file exists already was written by a worker that died before it could report.
     """
     if not shard.is_done:
         asked = shard.asked
@@ -66,16 +66,16 @@ def label_shards(
     """Judge the shards that are not done, several at a time.
 
     Args:
-        shards: of `plan_shards`.
-        workers: that judge.
-        on_done: called with a number of guide paths whenever so many more are done.
+        shards: shards from `plan_shards`.
+        workers: workers that judge the shards.
+        on_done: function called with the number of further guide paths that are done.
 
     Returns:
         Numbers of guide paths judged now and found judged before.
 
     Raises:
-        InputError: a verdict file is there that does not belong to these guide paths.
-        WorkerError: workers die over the same shard again and again.
+        InputError: a verdict file exists that does not belong to these guide paths.
+        WorkerError: workers die over the same shard repeatedly.
     """
     open_ = [shard for shard in shards if not shard.is_done]
     before = sum(map(len, shards)) - sum(map(len, open_))

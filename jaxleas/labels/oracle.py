@@ -1,4 +1,4 @@
-"""An exact planner as it is asked: by name, with settings, for a robot."""
+"""An exact planner as a question is put to it: its name, its settings, and a robot."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ from jaxleas.contacts.settings import PlannerSettings
 
 @dataclass(frozen=True)
 class Oracle:
-    """Whom to ask about guide paths.
+    """The planner that judges guide paths.
 
     Attributes:
-        planner: name of a planner, or MODULE:CLASS of your own, which asking imports.
+        planner: name of a planner, or MODULE:CLASS of your own, which is imported when it is used.
         settings: settings of the planner; its defaults if None.
         robot: name of the robot.
     """
@@ -26,7 +26,7 @@ class Oracle:
         """Return the planner and its settings.
 
         Raises:
-            InputError: there is no such planner, or the settings are another's.
+            InputError: there is no such planner, or the settings are another planner's.
         """
         found = find_planner(self.planner, [self.planner])
         return found, require_settings(found, self.settings)

@@ -8,10 +8,10 @@ from jaxleas.types.errors import InputError
 
 
 def settings_of(words: Sequence[str]) -> dict[str, Any]:
-    """Return settings written as NAME=VALUE, values as in YAML.
+    """Return settings written as NAME=VALUE, with values as in YAML.
 
     Raises:
-        InputError: a word is no such pair.
+        InputError: a word is not such a pair.
     """
     settings = {}
     for word in words:

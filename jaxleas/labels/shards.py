@@ -1,4 +1,4 @@
-"""Verdict files: one for each few dozen guide paths, complete or absent, so that work restarts."""
+"""Verdict files: one for each few dozen guide paths, complete or absent, so that work resumes."""
 
 import hashlib
 import inspect
@@ -21,7 +21,7 @@ VERSION = 2
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked about all guide paths of one file.
+    """The question about all guide paths of one file.
 
     Attributes:
         guides: guide path file.
@@ -38,7 +38,7 @@ class Asked:
     robot: str = DEFAULT_ROBOT
 
     def provenance(self) -> dict[str, Any]:
-        """Return where verdicts come from, as written into their files."""
+        """Return the provenance of verdicts, as written into their files."""
         own = {} if self.planner in PLANNERS else {"source": _source(self.planner)}
         return {
             "planner": self.planner,
@@ -61,7 +61,7 @@ class Shard:
         first: number of the first guide path.
         last: number after the last guide path.
         out: verdict file.
-        provenance: where the verdicts come from.
+        provenance: provenance of the verdicts.
     """
 
     asked: Asked
@@ -76,10 +76,10 @@ class Shard:
 
     @property
     def is_done(self) -> bool:
-        """Whether the verdict file is there.
+        """Whether the verdict file exists.
 
         Raises:
-            InputError: it is there, but made from other guides, another scene or other settings.
+            InputError: it exists, but was made from other guides, another scene or other settings.
         """
         if not self.out.exists():
             return False
@@ -88,7 +88,7 @@ class Shard:
             require_version(content, VERSION, self.out)
         found = content.get("provenance") if isinstance(content, dict) else None
         if isinstance(found, dict) and self.asked.robot == DEFAULT_ROBOT:
-            found = {"robot": self.provenance["robot"], **found}  # older files do not say: Talos
+            found = {"robot": self.provenance["robot"], **found}  # older files name no robot: Talos
         if found != self.provenance:
             raise InputError(
                 f"{self.out} holds verdicts made {_difference(found, self.provenance)}; give "
@@ -113,7 +113,7 @@ def read_verdicts(folder: str | Path) -> list[tuple[dict[str, Any], Verdict]]:
     """Return all verdicts under a folder, each with its provenance, in order of file and path.
 
     Raises:
-        InputError: there are none, or a file is none of ours.
+        InputError: there are no verdicts, or a file is not a verdict file.
     """
     files = sorted(Path(folder).rglob("verdicts_*.json"))
     if not files:
@@ -137,7 +137,7 @@ def _parts(path: Path, content: Any) -> tuple[dict[str, Any], list[Any]]:
 
 
 def _source(planner: str) -> dict[str, Any]:
-    """Return name and SHA-256 of the file that a planner of the user's own is written in."""
+    """Return name and SHA-256 of the file that defines a planner of the user's own."""
     file = Path(inspect.getfile(find_planner(planner, [planner]).source))
     return {"file": file.name, "sha256": _sha256(file)}
 

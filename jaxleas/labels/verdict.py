@@ -1,4 +1,4 @@
-"""Verdicts as JSON has them."""
+"""Verdicts as JSON values."""
 
 from dataclasses import asdict, fields
 from functools import cache
@@ -11,15 +11,15 @@ from jaxleas.types.errors import InputError
 
 
 def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict as JSON has it."""
+    """Return a verdict as a JSON value."""
     return asdict(verdict)
 
 
 def verdict_from_json(value: Any, where: str) -> Verdict:
-    """Return the verdict that JSON holds.
+    """Return the verdict in a JSON value.
 
     Raises:
-        InputError: it is none; `where` names it.
+        InputError: the value is not a verdict; the message names `where`.
     """
     names = set(Verdict.__dataclass_fields__)
     if not isinstance(value, dict) or set(value) != names:
@@ -35,5 +35,5 @@ def verdict_from_json(value: Any, where: str) -> Verdict:
 
 @cache
 def _model() -> type[BaseModel]:
-    """Return what checks the types: a dataclass by itself takes anything."""
+    """Return the model that checks the types: a dataclass by itself accepts anything."""
     return create_model("Verdict", **{each.name: (each.type, ...) for each in fields(Verdict)})  # type: ignore[call-overload]
