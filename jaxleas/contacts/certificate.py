@@ -16,7 +16,7 @@ from jaxleas.types.errors import InputError
 
 _Foot = tuple[str, np.ndarray, float]  # name, position [m], yaw [rad]
 TOLERANCE = 1e-6
-"""A plan that violates a constraint by more than this [m] is no plan."""
+"""A plan that violates a constraint by more than this is rejected [m]."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Violation:
     """The worst constraint of a plan.
 
     Attributes:
-        metres: by how much it is violated [m].
-        phase: in which.
-        constraint: a few words.
+        metres: amount by which it is violated [m].
+        phase: index of the phase that violates it.
+        constraint: name of the constraint, in a few words.
     """
 
     metres: float
@@ -43,7 +43,7 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
     """Return the constraint that `plan` violates most.
 
     Raises:
-        InputError: the plan is none for this problem (number of phases, surfaces, com).
+        InputError: the plan does not fit this problem (number of phases, surfaces, com).
     """
     footholds = _require_fitting(problem, plan)
     stances = {name: (pose.position, pose.yaw) for name, pose in problem.initial.items()}
@@ -100,7 +100,7 @@ def _com(
         reach, local = problem.polytopes.com[name], _turn_back(com - position, yaw)
         text = f"reach of the centre of mass c{number} from {name}"
         found.append((_excess(reach.normals, reach.offsets, local), text))
-    name, position, yaw = feet[number]  # c0 over the standing foot, c1 over the one that landed
+    name, position, yaw = feet[number]  # c0 over the standing foot, c1 over the landed one
     local = _turn_back(com - position, yaw)
     over = max(abs(local[0]) - problem.foot_half_size[0], abs(local[1]) - problem.foot_half_size[1])
     found.append((float(over), f"centre of mass c{number} over {name}"))

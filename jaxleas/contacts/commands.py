@@ -33,13 +33,13 @@ def plan(
 
     Args:
         problem: the contact problem, .json.
-        planner: planner; one that follows guide paths walks along the roots of the phases.
-        out: the plan, .json; one without footholds, but with the reason, when there is no plan.
-        time_limit: [s]; a plan not found in time has the status time_limit.
-        cost: of the mip: footholds near the guide's reference ones, by linear (L1) or quadratic
-            distance; none by default.
+        planner: planner to use; one that follows guide paths walks along the roots of the phases.
+        out: the plan, .json; without footholds, but with the reason, when there is no plan.
+        time_limit: time limit [s]; a plan not found in time has the status time_limit.
+        cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
+            quadratic distance; none by default.
         without_guide: allow every surface in every phase but the last.
-        max_combinations: after which sl1m gives up, 2000 by default.
+        max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     _require_writable_names(out, picture)
@@ -72,10 +72,10 @@ def check(
 
     Args:
         plan: the contact plan, .json.
-        problem: the contact problem it answers, .json; of sampling, whose roots it follows.
+        problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
         guide: the guide path it follows, .npz (sampling).
         scene: the scene it crosses, .json or a mesh (sampling).
-        query: which path of the guide's file.
+        query: number of the path in the guide's file.
         robot: robot of a plan that follows a guide (sampling), talos by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
@@ -124,20 +124,20 @@ def contacts(
     Args:
         guide: the guide path, .npz.
         scene: its terrain as polygons: .json scene, or .stl or .obj mesh in metres, z up.
-        planner: planner; a contact problem is made of the guide for those that need one.
+        planner: planner to use; those that need a contact problem get one made of the guide.
         out: the plan, .json.
-        problem: write the contact problem here too, .json.
-        query: which path of the file.
-        robot: whose step polytopes are used.
+        problem: file to write the contact problem to, too, .json.
+        query: number of the path in the file.
+        robot: robot whose step polytopes are used.
         model: two_com (with the centre of mass, the default) or feet.
-        every: keep one configuration of so many; by default the planner's own number.
-        candidates: what lies in a window around the root (the default), or in the moving leg's
+        every: keep every N-th configuration; by default the planner's own number.
+        candidates: surfaces in a window around the root (the default), or in the moving leg's
             range of motion (rom).
-        window: the window's edge, 0.8 by default [m].
-        time_limit: [s]; a plan not found in time has the status time_limit.
-        cost: of the mip: footholds near the guide's reference ones, by linear (L1) or quadratic
-            distance; none by default.
-        max_combinations: after which sl1m gives up, 2000 by default.
+        window: edge of the window, 0.8 by default [m].
+        time_limit: time limit [s]; a plan not found in time has the status time_limit.
+        cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
+            quadratic distance; none by default.
+        max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     from jaxleas.contacts.guide_file import read_guide_path
@@ -177,12 +177,12 @@ def _problem(
 
 
 def _wanted(cost: Cost | None) -> Cost | None:
-    """Return the cost asked for: "none" asks for none, which every planner can give."""
+    """Return the requested cost: "none" requests no cost, which every planner can give."""
     return None if cost == "none" else cost
 
 
 def _require_writable_names(out: Path, picture: Path | None) -> None:
-    """Find out before planning what cannot be written after it."""
+    """Refuse, before planning, files that could not be written after it."""
     if Path(out).suffix != ".json":
         raise InputError(f"--out {out}: contact plans are written as .json")
     if picture is not None:

@@ -21,11 +21,11 @@ from jaxleas.types import GuidePath, InputError
 
 Candidates = Literal["window", "rom"]
 EVERY = 14
-"""One configuration of so many is kept, N_ref of T 5.2.3: 28 cm at 2 cm a configuration."""
+"""Every N-th configuration is kept, N_ref of T 5.2.3: 28 cm at 2 cm per configuration."""
 WINDOW = 0.8
 """Edge of the square around the root in which a foot may land (T 5.2.3) [m]."""
 LEAST_PART = 1e-4
-"""Less than this [m^2] of a surface is no candidate."""
+"""A part of a surface with a smaller area than this is no candidate [m^2]."""
 MOST_ASIDE = 0.2
 """A foot that finds no ground within this distance [m] of its reference place cannot stand."""
 
@@ -34,7 +34,7 @@ class NoGroundError(InputError):
     """The scene has nothing to stand on at one of the kept configurations.
 
     Attributes:
-        phase: that finds no candidate; -1 if the feet already have no place to start from.
+        phase: phase that finds no candidate; -1 if the feet have no place to start from.
     """
 
     def __init__(self, message: str, phase: int) -> None:
@@ -57,26 +57,26 @@ def problem_from_guide(
     first_foot: str | None = None,
     polytopes: StepPolytopes | None = None,
 ) -> ContactProblem:
-    """Make one step of each kept configuration, its foot oriented as the root is there.
+    """Make one step of each kept configuration; its foot is oriented as the root is there.
 
     The feet first stand on the ground beside the first configuration; configurations `every`, 2
     `every`, ... and the last of the guide are kept, and feet move in turn, in the robot's order.
 
     Args:
-        guide: a guide path.
-        scene: whose surfaces it crosses.
-        robot: its name.
+        guide: guide path to follow.
+        scene: scene whose surfaces the guide crosses.
+        robot: name of the robot.
         model: "two_com" or "feet".
-        every: keep one configuration of so many.
-        candidates: "window": what lies of the surfaces in a square around the root, turned with it;
-            "rom": what lies in the range of motion of the leg that moves.
-        window: the square's edge [m].
+        every: number N: every N-th configuration is kept.
+        candidates: "window": parts of surfaces in a square around the root, turned with it; "rom":
+            parts of surfaces in the range of motion of the leg that moves.
+        window: edge of the square [m].
         first_foot: name of the foot that moves first; the robot's first foot by default.
-        polytopes: instead of the robot's own.
+        polytopes: step polytopes to use instead of the robot's own.
 
     Raises:
         InputError: the guide is too short or not finite.
-        NoGroundError: it leaves the scene (where is said).
+        NoGroundError: the guide leaves the scene; says where.
     """
     _require_usable(guide, every, window)
     described = load_robot(robot)
@@ -121,11 +121,11 @@ def problem_from_guide(
 
 
 def kept_configurations(length: int, every: int) -> list[int]:
-    """Return the configurations of a guide that phases are made of: one in so many, the last too.
+    """Return the configurations of a guide that phases are made of: every N-th, and the last.
 
     Args:
-        length: configurations of the guide.
-        every: keep one of so many.
+        length: number of configurations of the guide.
+        every: number N: every N-th configuration is kept.
     """
     return [*range(every, length - 1, every), length - 1]
 
@@ -137,11 +137,11 @@ def _add(
     whole: str,
     part: ContactSurface | None,
 ) -> str:
-    """Add the part of a surface that is a candidate, unless all of it is; return its name."""
+    """Add the part of a surface that is a candidate, unless it is the whole; return its name."""
     if part is None:
         return whole
     name = f"{whole}@{phase}"
-    while name in surfaces:  # a scene may use such names itself
+    while name in surfaces:  # a scene itself may use such names
         name += "'"
     surfaces[name], parts[name] = part, whole
     return name
@@ -172,7 +172,7 @@ class _Finder:
     def find(
         self, root: np.ndarray, yaw: float, foot: str
     ) -> list[tuple[str, ContactSurface | None]]:
-        """Return names, nearest first, each with the part within reach; None where all of it is."""
+        """Return names, nearest first, with the part of each in reach; None for a whole surface."""
         turn, reach = rotation(yaw), self.reach[foot]
         meets = np.flatnonzero(polygons_meet_polytope((self.packed - root) @ turn, reach))
         found: list[tuple[float, str, ContactSurface | None]] = []
@@ -220,7 +220,7 @@ def _initial(
 def nearest_below(
     surface: ContactSurface, place: Float[np.ndarray, " 3"]
 ) -> tuple[Float[np.ndarray, " 3"], float]:
-    """Return the point of a surface that is horizontally nearest to a place, and how far it is [m].
+    """Return the point of a surface that is horizontally nearest to a place, and its distance [m].
 
     A wall has no such point: its distance is infinite.
     """

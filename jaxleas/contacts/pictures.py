@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLOURS = ("tab:red", "goldenrod", "tab:green", "tab:purple", "tab:cyan", "tab:brown")
-"""Of the effectors, in the robot's order."""
+"""Colours of the effectors, in the robot's order."""
 FULL_NAMES = {name: f"{limb} foot" for name, limb in LIMB_OF_FOOT.items()}
 GUIDE, COM, FAILED = "tab:blue", "black", "magenta"
 VIEWS = {"above": (0, 1), "from the side": (0, 2)}
-"""Which coordinates each view shows."""
+"""Coordinates that each view shows."""
 MOST_MARKED = 120
 """A guide with more configurations is drawn as a line without dots."""
-AROUND = 0.4  # shown beyond footholds and roots [m]
+AROUND = 0.4  # margin shown beyond footholds and roots [m]
 
 
 def require_picture(path: str | Path) -> None:
@@ -45,15 +45,14 @@ def draw_plan(
 
     Surfaces are grey, the guide blue, left feet red and right feet yellow, those of other robots in
     further colours, the centre of mass black. Without a plan, the candidates of the first step that
-    cannot be made are outlined, and the reason is the title, and the feet are those of the phases
-    before, where these are given.
+    cannot be made are outlined, the reason is the title, and the feet are those of `made`, if any.
 
     Args:
-        path: of the picture (.png, .svg, .pdf).
+        path: path of the picture (.png, .svg, .pdf).
         problem: the contact problem.
-        plan: its answer.
-        guide: drawn whole; without it, the roots of the phases are.
-        made: of a plan that failed, one for the phases before the first that cannot be made.
+        plan: answer to the problem.
+        guide: guide path, which is drawn whole; the roots of the phases if None.
+        made: for a plan that failed, a plan for the phases before the first that cannot be made.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
@@ -101,7 +100,7 @@ def _draw_surfaces(
 
 
 def failing_candidates(problem: ContactProblem, plan: ContactPlan) -> tuple[str, ...]:
-    """Return the candidates of the first phase that cannot be made; none when it is not known."""
+    """Return the candidates of the first phase that cannot be made; none if it is not known."""
     last = plan.last_feasible_phase
     if plan.feasible or last is None or last + 1 >= len(problem):
         return ()
@@ -163,7 +162,7 @@ def _frame(
     roots: np.ndarray,
     shown: tuple[int, int],
 ) -> None:
-    """Show what the robot crosses, not the whole scene."""
+    """Show the region that the robot crosses, not the whole scene."""
     points = [pose.position for pose in problem.initial.values()]
     points += list(roots)
     if plan.footholds is not None:

@@ -1,4 +1,4 @@
-"""The contact plan: what a planner answers, as a value and as a file (docs/contacts.md)."""
+"""The contact plan: a planner's answer, as a value and as a file (docs/contacts.md)."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -25,19 +25,20 @@ class ContactPlan:
         feasible: whether a plan was found.
         status: "feasible"; "infeasible" (proved); "time_limit" (not decided in time); "not_found"
             (an incomplete planner gave up; proves nothing).
-        reason: why there is none, a sentence; empty when there is one.
-        surfaces: name of the surface of each phase; of the phases planned.
-        footholds: of each phase, in the world [m].
-        com: two positions of the centre of mass a phase [m]; None where the planner has none.
-        last_feasible_phase: the last phase that can be made (the last of all when feasible, -1
-            when none can); None when not asked for.
-        max_violation: by the certificate [m]; None without plan.
-        seconds: spent planning.
-        combinations: of surfaces tried one after the other; None where a solver does that inside.
+        reason: why there is no plan, a sentence; empty when there is one.
+        surfaces: name of the surface of each planned phase.
+        footholds: foothold of each phase, in the world [m].
+        com: two positions of the centre of mass per phase [m]; None where the planner has none.
+        last_feasible_phase: last phase that can be made (the last of all when feasible, -1
+            when none can); None when not requested.
+        max_violation: largest violation by the certificate [m]; None without a plan.
+        seconds: time spent planning [s].
+        combinations: number of combinations of surfaces tried one after the other; None where a
+            solver does that inside.
         undecided: phases that the L1 relaxation left without a surface (SL1M only).
-        robustness: of each posture [N]; None for planners without postures.
+        robustness: robustness of each posture [N]; None for planners without postures.
         postures: both feet at each kept configuration of the guide (sampling only).
-        gap: between a standing sole and its surface in these postures [m].
+        gap: gap between a standing sole and its surface in these postures [m].
     """
 
     planner: str
@@ -92,7 +93,7 @@ def read_plan(path: str | Path) -> ContactPlan:
     """Read a plan from JSON.
 
     Raises:
-        InputError: the file is no plan; says which key is wrong.
+        InputError: the file is not a plan; says which key is wrong.
     """
     content = read_json(path)
     needed = ("planner", "feasible", "status", "surfaces", "footholds")

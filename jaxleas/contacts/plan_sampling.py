@@ -22,7 +22,7 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
 MOST_BEYOND = 1.0
-"""A root further beyond the scene's surfaces [m] can stand on none."""
+"""A root further than this from the scene's surfaces cannot stand on any of them [m]."""
 
 
 def plan_sampling(
@@ -39,10 +39,11 @@ def plan_sampling(
     configuration. Without success the plan holds what was reached: "not_found" proves nothing.
 
     Args:
-        guide: followed exactly.
-        scene: surfaces to stand on, obstacles to stay clear of.
-        settings: of the planner.
-        time_limit: [s], once the data base is made; after it the plan's status is "time_limit".
+        guide: guide path to follow exactly.
+        scene: surfaces to stand on and obstacles to avoid.
+        settings: settings of the planner.
+        time_limit: time limit, counted once the data base is made [s]; after it the plan's
+            status is "time_limit".
         robot: robot with two legs; Talos by default.
 
     Raises:
@@ -74,10 +75,10 @@ def plan_sampling(
 
 
 def contact_plan(walked: SamplingPlan, feet: Sequence[str], gap: float) -> ContactPlan:
-    """Return the sampling-based planner's answer as a contact plan, without certificate.
+    """Return the sampling-based planner's answer as a contact plan, without a certificate.
 
     Args:
-        walked: the answer.
+        walked: answer of the planner.
         feet: names of the robot's feet, in its order.
         gap: between a standing sole and its surface, `SamplingSettings.contact_lift` [m].
     """
@@ -102,14 +103,14 @@ def contact_plan(walked: SamplingPlan, feet: Sequence[str], gap: float) -> Conta
 def walked_problem(
     plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
 ) -> ContactProblem:
-    """Return the steps of a sampling plan as a contact problem, each with the surface it took.
+    """Return the steps of a sampling plan as a contact problem, each with the surface it used.
 
-    For pictures, and to ask another planner for the same steps. Model "feet".
+    The problem serves for pictures, and to ask another planner for the same steps. Model "feet".
 
     Args:
-        plan: of `plan_sampling`.
-        guide: that it follows.
-        scene: that it crosses.
+        plan: plan from `plan_sampling`.
+        guide: guide path that the plan follows.
+        scene: scene that the plan crosses.
         robot: robot that the plan is for; Talos by default.
     """
     robot, postures = robot or load_robot("talos"), plan.postures or ()

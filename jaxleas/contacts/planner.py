@@ -1,4 +1,4 @@
-"""What an exact contact planner is: one class, which plans one problem and judges many guides."""
+"""The interface of an exact contact planner: it plans one problem and judges many guides."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
@@ -22,11 +22,11 @@ class PlannerError(RuntimeError):
 
 @dataclass(frozen=True)
 class Grain:
-    """How much work at a time suits a planner.
+    """The amount of work at a time that suits a planner.
 
     Attributes:
-        task: guide paths per task of a worker: enough to work on abreast, few enough to do again
-            when a worker dies.
+        task: guide paths per task of a worker: enough to walk together, few enough to repeat when a
+            worker dies.
         shard: guide paths per verdict file, lost when labelling is interrupted.
         abreast: whether the planner walks guide paths together, and so gains from few large tasks.
     """
@@ -42,7 +42,7 @@ class AskedGuide:
 
     Attributes:
         robot: name of the robot.
-        guide: guide path to be followed.
+        guide: guide path to follow.
         scene: scene to walk on.
     """
 
@@ -53,12 +53,12 @@ class AskedGuide:
 
 @dataclass(frozen=True, eq=False)
 class AskedGuides:
-    """Guide paths to be judged, each over one of several scenes.
+    """Guide paths to judge, each over one of several scenes.
 
     Attributes:
         robot: name of the robot.
         scenes: scenes to walk on.
-        paths: guide paths.
+        paths: guide paths to judge.
         scene_index: index of each path's scene.
         first: number of the first path, for the verdicts.
     """
@@ -80,12 +80,12 @@ class Planner(ABC):
 
     Attributes:
         title: title in tables and pictures; the name where empty.
-        settings: class of the settings it judges guide paths by; its `keep_every` says which
+        settings: class of the settings for judging guide paths; its `keep_every` says which
             configurations count.
         plan_settings: class of the settings of a single plan.
-        needs: whether a plan is made of a contact problem, or of a guide path over a scene.
-        grain: how much work at a time suits it.
-        measures: what its verdicts report beyond success and steps.
+        needs: whether it plans for a contact problem, or for a guide path over a scene.
+        grain: amount of work at a time that suits it.
+        measures: measures that its verdicts report besides success and steps.
         name: name in the registry, or MODULE:CLASS.
     """
 
@@ -101,7 +101,7 @@ class Planner(ABC):
 
     @property
     def source(self) -> type:
-        """The class whose source file says what the planner does."""
+        """The class whose source file defines the planner's behaviour."""
         return type(self)
 
     @abstractmethod
@@ -127,13 +127,13 @@ class Planner(ABC):
         """Plan contacts once, and certify them.
 
         Args:
-            asked: `ContactProblem` or `AskedGuide`, as `needs` says.
+            asked: `ContactProblem` or `AskedGuide`, according to `needs`.
             settings: instance of `plan_settings`.
             time_limit: time after which the status is "time_limit" [s].
             diagnose: whether to find out what stops a plan that does not exist.
 
         Raises:
-            InputError: it judges only.
+            InputError: the planner judges only.
         """
         raise InputError(
             f"the planner {self.name} judges guide paths and writes no plans: use jaxleas label"
@@ -141,13 +141,13 @@ class Planner(ABC):
 
 
 def require_time_limit(time_limit: float) -> None:
-    """Refuse a time limit that is no positive number of seconds."""
+    """Refuse a time limit that is not a positive number of seconds."""
     if not time_limit > 0.0:
         raise InputError(f"time limit {time_limit} must be a positive number of seconds")
 
 
 def mean_step(path: GuidePath, last_index: int, steps: int) -> float | None:
-    """Return the root's way up to a configuration per step [m]; None without step."""
+    """Return the root's path length per step, up to a configuration [m]; None without a step."""
     if steps < 1:
         return None
     return path[: last_index + 1].length / steps

@@ -1,4 +1,4 @@
-"""How far a step and the centre of mass reach: polytopes in the frame of an effector."""
+"""Reach of a step and of the centre of mass: polytopes in the frame of an effector."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ class StepPolytopes:
     """Relative reach; "X_in_Y" is X's position in Y's frame (x forward, y left, z up).
 
     Attributes:
-        relative: where one effector may be in another one's frame, by names such as "RF_in_LF".
-        com: where the centre of mass may be, by the effector; empty for the model "feet".
+        relative: positions of one effector in another one's frame, by names such as "RF_in_LF".
+        com: positions of the centre of mass, by effector; empty for the model "feet".
     """
 
     relative: dict[str, Polytope]
     com: dict[str, Polytope]
 
     def reach(self, moving: str, standing: str) -> Polytope:
-        """Return where one effector may be in the frame of another one."""
+        """Return the polytope of one effector's positions in the frame of another one."""
         return self.relative[relative_name(moving, standing)]
 
 
@@ -58,14 +58,14 @@ def read_polytopes(
     """Return the polytopes of a parsed {"RF_in_LF": {"A", "b"}, ...}.
 
     Args:
-        where: names the file, for messages.
+        where: name of the file, for messages.
         content: parsed object.
         model: "feet" or "two_com".
         effectors: names of the effectors that step or stand.
-        others: names of effectors whose polytopes may be there, too.
+        others: names of further effectors whose polytopes may be present.
 
     Raises:
-        InputError: one is missing or malformed; says which.
+        InputError: a polytope is missing or malformed; says which one.
     """
     needed = polytope_names(effectors, model)
     known = polytope_names([*effectors, *others], "two_com")
@@ -112,14 +112,14 @@ def _polytope(where: str, content: object) -> Polytope:
 
 @cache
 def load_step_polytopes(robot: str, effectors: tuple[str, ...] | None = None) -> StepPolytopes:
-    """Return the step polytopes of a robot, which its file holds.
+    """Return the step polytopes in a robot's file.
 
     Args:
         robot: name of the robot.
         effectors: names of the effectors that step or stand; its feet by default.
 
     Raises:
-        InputError: there are none for this robot.
+        InputError: there are no polytopes for this robot.
     """
     try:
         described = load_robot(robot)

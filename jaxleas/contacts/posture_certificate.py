@@ -1,4 +1,4 @@
-"""The certificate of postures: feet, legs, centre of mass and equilibrium, worked out again.
+"""The certificate of postures: feet, legs, centre of mass and equilibrium, computed anew.
 
 Shares no code with the sampling-based planner: joint by joint, posture by posture, with general
 linear programs and exact friction cones. Only the joint angles come from the limb's inverse; they
@@ -21,17 +21,17 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
 _SAME_FORCE = 1e-6
-"""A recorded robustness may exceed the one worked out again by this fraction."""
+"""A recorded robustness may exceed the recomputed one by this fraction."""
 
 
 @dataclass(frozen=True)
 class PostureCertificate:
-    """What was found.
+    """The result of a check.
 
     Attributes:
-        worst: the constraint that is violated most; its `phase` is the posture's number.
-        least_robustness: robustness that all postures have with exact friction cones, at least [N].
-        robustness_error: the largest fraction by which the plan states more than there is.
+        worst: constraint that is violated most; its `phase` is the posture's number.
+        least_robustness: lower bound of all postures' robustness with exact friction cones [N].
+        robustness_error: largest fraction by which the plan overstates a robustness.
     """
 
     worst: Violation
@@ -45,7 +45,7 @@ class PostureCertificate:
 
     @property
     def complaint(self) -> str:
-        """What is wrong, as the end of a sentence; empty if nothing is."""
+        """Description of what is wrong, as the end of a sentence; empty for a certified plan."""
         worst = self.worst
         if not worst.certified:
             return f"violates {worst.constraint} in posture {worst.phase} by {worst.metres:.3g} m"
@@ -67,16 +67,16 @@ def certify_postures(
     its joint limits; the centre of mass is where the plan says; it can be over the standing foot
     while the other one moves, in reach of both (T app. B); the posture is in equilibrium and has
     the robustness that the plan states, with exact friction cones: planners that linearise the
-    cones from inside state less than there is, never more. Collisions are not judged again.
+    cones from inside state less than the exact value, never more. Collisions are not judged again.
 
     Args:
-        plan: with postures.
-        guide: that it follows.
-        scene: that it crosses.
+        plan: plan with postures.
+        guide: guide path that the plan follows.
+        scene: scene that the plan crosses.
         robot: robot that the plan is for; Talos by default.
 
     Raises:
-        InputError: the plan is none for this guide and scene.
+        InputError: the plan does not belong to this guide and scene.
     """
     postures = _require_fitting(plan, guide, scene)
     robot = robot or load_robot("talos")
@@ -103,7 +103,7 @@ def certify_postures(
 def _change(
     robot: Robot, before: Posture, stood_before: Stood, now: Posture, stood: Stood
 ) -> list[tuple[float, str]]:
-    """Feet that did not move are where they were; one that did had somewhere to shift weight."""
+    """Return violations: an unmoved foot changed place, or a moved one could not shift weight."""
     found = []
     for foot in now.feet:
         if foot != now.moved:
@@ -119,7 +119,7 @@ def _change(
 
 
 def _robustness(stood: Stood, robot: Robot, enough: float) -> float:
-    """Return the robustness with exact friction cones; any lower bound from `enough` on will do."""
+    """Return the robustness with exact friction cones, or any lower bound from `enough` on."""
     points, normals, ahead, friction = [], [], [], []
     for foot, rotation in stood.rotations.items():
         count = len(stood.corners[foot])

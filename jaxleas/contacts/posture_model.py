@@ -1,4 +1,4 @@
-"""One posture worked out the slow way: legs joint by joint, soles corner by corner."""
+"""One posture computed the slow way: legs joint by joint, soles corner by corner."""
 
 import math
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ from jaxleas.types import InputError
 
 @dataclass(frozen=True, eq=False)
 class Stood:
-    """A posture, worked out.
+    """A computed posture.
 
     Attributes:
-        found: by how much each constraint on feet and legs is violated [m], and its name.
-        rotations: of the feet in the world.
+        found: violation of each constraint on feet and legs [m], with the constraint's name.
+        rotations: rotations of the feet in the world.
         soles: middle of each sole in the world [m].
-        corners: of the part of each sole that is over its surface [m].
-        com: of the whole robot in the world [m].
-        mass: of the whole robot [kg].
+        corners: corners of the part of each sole that is over its surface [m].
+        com: centre of mass of the whole robot in the world [m].
+        mass: mass of the whole robot [kg].
     """
 
     found: list[tuple[float, str]]
@@ -45,14 +45,14 @@ def stand(
     scene: Scene,
     robot: Robot,
 ) -> Stood:
-    """Work out a posture.
+    """Compute a posture.
 
     Args:
-        posture: of a sampling plan.
-        root: of the guide's configuration [m].
-        yaw: likewise [rad].
-        gap: between sole and surface [m].
-        scene: that it stands on.
+        posture: posture of a sampling plan.
+        root: position of the root at the guide's configuration [m].
+        yaw: heading of the root there [rad].
+        gap: gap between sole and surface [m].
+        scene: scene that the robot stands on.
         robot: robot with a model of each limb.
 
     Raises:
@@ -97,7 +97,7 @@ def limb_of(robot: Robot, effector: str) -> LimbModel:
     """Return the joints, masses and shapes of the limb that carries an effector.
 
     Raises:
-        InputError: the robot has no such effector, or its file no 'model' of the limb.
+        InputError: the robot has no such effector, or its file has no 'model' of the limb.
     """
     limb = robot.limbs[robot.effector_index(effector)]
     if limb.model is None:
@@ -109,7 +109,7 @@ def limb_of(robot: Robot, effector: str) -> LimbModel:
 
 
 def body_of(robot: Robot) -> Body:
-    """Return the mass of all that is no limb.
+    """Return the mass of everything that is not a limb.
 
     Raises:
         InputError: the robot's file does not state it.
@@ -120,11 +120,11 @@ def body_of(robot: Robot) -> Body:
 
 
 def two_point_margin(stood: Stood, moving: str, reaches: dict[str, Polytope]) -> float:
-    """Return how much room the centre of mass has over the standing foot, in reach of both [m].
+    """Return the room of the centre of mass over the standing foot, in reach of both feet [m].
 
     Args:
-        stood: the posture before the foot leaves, or after it has landed.
-        moving: the other foot.
+        stood: posture before the foot leaves, or after it has landed.
+        moving: name of the other foot.
         reaches: reach of the centre of mass from each foot, in its frame turned by its yaw alone.
     """
     (standing,) = (foot for foot in reaches if foot != moving)
@@ -158,11 +158,11 @@ def chain(
     """Place a limb's links in the root frame, one joint after the other.
 
     Args:
-        model: limb.
+        model: model of the limb.
         angles: joint angles [rad].
 
     Returns:
-        Frames of the links, origins of their joints [m], the effector's position and rotation.
+        Frames of the links, origins of their joints [m], position and rotation of the effector.
     """
     place, turn = np.zeros(3), np.eye(3)
     joints, frames, origins = model.chain, [], []
@@ -186,7 +186,7 @@ def about(axis: str, angle: float) -> Float[np.ndarray, "3 3"]:
 
 
 def foot_rotation(normal: Float[np.ndarray, " 3"], yaw: float) -> Float[np.ndarray, "3 3"]:
-    """Return the rotation whose third column is the normal and whose first one heads along yaw."""
+    """Return the rotation with the normal as third column, whose first column heads along yaw."""
     ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
     ahead[2] = -(normal[:2] @ ahead[:2]) / normal[2]
     ahead /= math.sqrt(float(ahead @ ahead))
@@ -194,7 +194,7 @@ def foot_rotation(normal: Float[np.ndarray, " 3"], yaw: float) -> Float[np.ndarr
 
 
 def normal_of(polygon: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, " 3"]:
-    """Return the unit normal, upwards."""
+    """Return the unit normal, which points upwards."""
     arms = polygon[1:] - polygon[0]
     normal = np.cross(arms[:-1], arms[1:]).sum(axis=0)
     return normal * math.copysign(1.0, normal[2]) / math.sqrt(float(normal @ normal))
@@ -208,7 +208,7 @@ def beyond_edges(polygon: np.ndarray, normal: np.ndarray, point: np.ndarray) -> 
 
 
 def _witness(model: LimbModel, position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
-    """Return angles within the joint limits that bring the effector as near as is known."""
+    """Return the angles of the inverse kinematics, clipped to the joint limits."""
     angles, _ = model.inverse(position, rotation)
     return np.clip(angles, model.chain.lower, model.chain.upper)
 
@@ -226,7 +226,7 @@ def _over_surface(
     rotation: np.ndarray,
     half_size: tuple[float, float],
 ) -> np.ndarray:
-    """Return the sole's corners, each drawn in towards the middle until it is over the surface."""
+    """Return the sole's corners, each moved towards the middle until it is over the surface."""
     corners = []
     for arm in _arms(half_size):
         reach, share = rotation @ arm, 1.0

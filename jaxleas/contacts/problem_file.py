@@ -1,4 +1,4 @@
-"""Contact problems as files: JSON, every mistake answered with one sentence."""
+"""Contact problems as files: JSON, with one sentence for every mistake."""
 
 import math
 from pathlib import Path
@@ -36,8 +36,8 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
     """Return the problem in a parsed JSON object.
 
     Args:
-        where: names the file, for messages.
-        content: of the file.
+        where: name of the file, for messages.
+        content: content of the file.
 
     Raises:
         InputError: an entry (named) cannot be used.
@@ -108,7 +108,7 @@ def require_feet_on_surfaces(problem: ContactProblem, where: str) -> None:
     """Refuse initial feet that stand on no surface of the problem.
 
     Raises:
-        InputError: says which foot, and how far the nearest surface is.
+        InputError: a foot stands on no surface; says which one, and how far the nearest surface is.
     """
     for foot, pose in problem.initial.items():
         gaps = {
@@ -152,7 +152,7 @@ def _initial(where: str, content: Any, robot: str) -> dict[str, FootPose]:
 def _effectors(where: str, named: list[str], robot: str) -> list[str]:
     """Return the effectors that stand, in the robot's order: all its feet, and palms where named.
 
-    Of a robot that is not known here, which a problem with polytopes may be of: those named.
+    A robot that is not known here may have a problem with polytopes: then those named.
     """
     try:
         known = load_robot(robot)
@@ -212,7 +212,7 @@ def _phase(
 
 
 def _refuse_other_rotations(where: str, content: dict[str, Any]) -> None:
-    """Refuse a rotation that would have been let pass unread, as comments are."""
+    """Refuse a rotation that would otherwise be ignored, as comments are."""
     for key in OTHER_ROTATIONS:
         if key in content:
             raise InputError(
@@ -281,6 +281,6 @@ def _yaw(where: str, content: Any) -> float:
 
 
 def _is_number(content: Any) -> bool:
-    """Tell finite numbers from others, and from integers too large to be any."""
+    """Return whether the content is a finite number, and no integer too large to be a float."""
     is_number = isinstance(content, int | float) and not isinstance(content, bool)
     return is_number and abs(content) < 1e300

@@ -1,4 +1,4 @@
-"""The certificate of a stance: every contact lies on its surface, is in reach, and all balance.
+"""The certificate of a stance: every contact lies on its surface and in reach, in equilibrium.
 
 Shares no code with the planners: friction cones are exact. Surfaces may have any orientation:
 floors, walls, ceilings.
@@ -22,19 +22,19 @@ from jaxleas.types import Contact, InputError, RootPose, Stance
 _SIDES = 256
 """Generators of a friction cone, from inside, where forces are limited: 0.01 % less friction."""
 _WITHIN = 1e-6
-"""Limited forces that miss the robot's weight by more than this share of it carry no robot."""
+"""Limited forces that miss the robot's weight by more than this share do not carry it."""
 
 
 @dataclass(frozen=True)
 class StanceCertificate:
-    """What was found.
+    """The result of a check.
 
     Attributes:
-        metres: by how much the worst geometric constraint is violated [m]; infinite where an
-            effector is on a surface that it may not touch.
-        constraint: which one, in a few words.
-        robustness: robustness of equilibrium with exact friction cones [N]; below 0 it falls.
-        overload: share of the weight that limited forces leave; 0 where no force is limited.
+        metres: violation of the worst geometric constraint [m]; infinite where an effector is on a
+            surface that it may not touch.
+        constraint: the worst constraint, in a few words.
+        robustness: robustness of equilibrium with exact friction cones [N]; negative: it falls.
+        overload: share of the weight that limited forces cannot carry; 0 where no force is limited.
     """
 
     metres: float
@@ -49,7 +49,7 @@ class StanceCertificate:
 
     @property
     def complaint(self) -> str:
-        """What is wrong, as the end of a sentence; empty if nothing is."""
+        """Description of what is wrong, as the end of a sentence; empty for a certified stance."""
         if math.isinf(self.metres):
             return f"has {self.constraint}"
         if not self.metres <= TOLERANCE:
@@ -75,13 +75,13 @@ def certify_stance(
 
     Args:
         robot: robot that stands.
-        root: pose of its root in the world.
-        stance: contacts, at least one.
-        scene: surfaces of any orientation, and who may touch them.
-        com: centre of mass in the world [m].
+        root: pose of the robot's root in the world.
+        stance: contacts to check, at least one.
+        scene: surfaces of any orientation, and the effectors that may touch them.
+        com: position of the centre of mass in the world [m].
 
     Raises:
-        InputError: there is no contact, or one is of an effector or a surface that there is not.
+        InputError: there is no contact, or one has an unknown effector or surface.
     """
     if not len(stance):
         raise InputError("a stance without contacts cannot be certified: nothing carries the robot")
@@ -100,7 +100,7 @@ def certify_stance(
 
 
 def _permitted(robot: Robot, contact: Contact, scene: Scene) -> tuple[float, str]:
-    """Say whether an effector of this kind may touch the surface."""
+    """Return the violation, infinite where such an effector may not touch the surface."""
     stands = robot.effector(contact.effector).stands
     allowed, kind = (scene.walkable, "feet") if stands else (scene.pressable, "palms")
     wrong = contact.surface not in allowed
@@ -109,9 +109,9 @@ def _permitted(robot: Robot, contact: Contact, scene: Scene) -> tuple[float, str
 
 
 def _on_surface(robot: Robot, contact: Contact, polygon: np.ndarray) -> list[tuple[float, str]]:
-    """All of what touches lies in the plane and within the edges, and faces away from the surface.
+    """Return violations of: the contact is in the plane, within the edges, and faces away.
 
-    That the normals agree is measured at a metre's distance from the contact.
+    The angle between the normals is measured at a distance of one metre from the contact.
     """
     name = contact.effector
     corners = contact.pose.transform(robot.effector(name).corners)
@@ -156,7 +156,7 @@ def _overload(robot: Robot, stance: Stance, com: np.ndarray) -> float:
     """Return the least s with |sum f + g| <= s and |sum (p - c) x f| <= s, in units of the weight.
 
     The forces f are in the cones, and the normal force of an effector is at most its limit; torques
-    are those of a metre's arm. Nothing is asked where no effector has a limit.
+    have a lever arm of one metre. The result is 0 where no effector has a limit.
     """
     effectors = [robot.effector(name) for name in stance.contacts]
     if all(effector.force_limit is None for effector in effectors):
@@ -175,7 +175,7 @@ def _overload(robot: Robot, stance: Stance, com: np.ndarray) -> float:
     slack = -np.ones((6, 1))
     limits = np.array([effector.force_limit or np.inf for effector in effectors]) / weight
     limited = np.flatnonzero(np.isfinite(limits))
-    normal_forces = (np.array(owners) == limited[:, None]).astype(float)  # a generator's is 1
+    normal_forces = (np.array(owners) == limited[:, None]).astype(float)  # each generator's is 1
     rows = [
         np.hstack([columns, slack]),
         np.hstack([-columns, slack]),

@@ -15,7 +15,7 @@ from jaxleas.terrain.polygons import (
 )
 from jaxleas.types.errors import InputError
 
-_STRICTLY_CONVEX = 1e-9  # a corner that turns by less [m] is not one
+_STRICTLY_CONVEX = 1e-9  # a corner that turns by less than this is not a corner [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class ContactSurface:
     """One convex polygon in a plane: p is on it iff d . p = e and S p <= s (T eq. 5.1).
 
     Attributes:
-        vertices: exactly planar and convex, counter-clockwise seen from above [m].
+        vertices: vertices in a plane, convex, counter-clockwise seen from above [m].
     """
 
     vertices: Float[np.ndarray, "V 3"]
@@ -58,7 +58,7 @@ class ContactSurface:
         return np.stack([first, np.cross(self.normal, first)])
 
     def distance(self, points: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch"]:
-        """Return how far points violate the plane or an edge, at worst [m]; 0 on the surface."""
+        """Return the worst violation of the plane or an edge by points [m]; 0 on the surface."""
         plane = np.abs(points @ self.normal - self.offset)
         edges = np.max(points @ self.edge_normals.T - self.edge_offsets, axis=-1)
         return np.maximum(plane, np.maximum(edges, 0.0))
@@ -72,7 +72,7 @@ def make_surface(vertices: Float[np.ndarray, "V 3"], where: str) -> ContactSurfa
 
     Args:
         vertices: corners in order [m].
-        where: names the file and the surface, for the message.
+        where: name of the file and the surface, for messages.
 
     Raises:
         InputError: it is not a planar convex polygon; says by how many metres.
@@ -88,7 +88,7 @@ def make_surface(vertices: Float[np.ndarray, "V 3"], where: str) -> ContactSurfa
 
 
 def require_polygon(vertices: Float[np.ndarray, "V 3"], where: str) -> None:
-    """Refuse what is not a planar convex polygon; unlike on a terrain, either winding will do."""
+    """Refuse a polygon that is not planar and convex; unlike on a terrain, it may be clockwise."""
     if len(vertices) < 3:
         raise InputError(f"{where} has {len(vertices)} vertices; a polygon needs at least 3")
     require_few(vertices, where)

@@ -1,7 +1,7 @@
-"""Where the centre of mass can be in given steps, or the half-space that shows there is no place.
+"""Places for the centre of mass in given steps, or the half-space that shows there is none.
 
-All steps of a plan are judged together: nearly always one of 25 points over the sole will do, and
-what is left are linear programs of four variables, solved side by side.
+All steps of a plan are judged together: nearly always one of 25 points over the sole is valid, and
+the rest are linear programs of four variables, solved together.
 """
 
 from dataclasses import dataclass
@@ -17,20 +17,20 @@ from jaxleas.dynamics.small_lp import maximise
 FITS = 1e-7
 """A place for the centre of mass may violate its constraints by this [m] (certificate: 1e-6)."""
 _MOST_MARGIN = 0.05  # [m]
-_ABOVE = np.array([0.0, 0.0, 0.75])  # of the feet [m]: where the search for a place begins
+_ABOVE = np.array([0.0, 0.0, 0.75])  # above the feet: where the search for a place begins [m]
 _AXIS = np.linspace(-0.9, 0.9, 5)
 _OVER_SOLE = np.stack(np.meshgrid(_AXIS, _AXIS), axis=-1).reshape(25, 2)  # as shares of its size
 _FLAT = 1e-12
 
 Cut = tuple[Float[np.ndarray, " 3"], float]
-"""g and h: g . d <= h holds for every possible step d, but not for this one."""
+"""g and h: g . d <= h holds for every possible step d, but not for the given one."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """One row for each centre of mass: A c <= b, c relative to the standing foot.
+    """Constraints with one row for each centre of mass: A c <= b, c relative to the standing foot.
 
-    Rows of zeros with b = 1 fill up to the longest; `split` counts those of the standing foot.
+    Rows of zeros with b = 1 pad to the longest; `split` counts the rows of the standing foot.
     """
 
     A: Float[np.ndarray, "q f 3"]
@@ -48,13 +48,13 @@ def place_coms(
     """Return places for c_k0 and c_k1, relative to the standing foot, and the cuts of some steps.
 
     Args:
-        steps: with their `com`.
-        displacements: of the landing foot from the standing one [m].
-        half_size: of the sole [m].
+        steps: steps with their `com`.
+        displacements: displacement of each landing foot from the standing one [m].
+        half_size: half length and half width of the sole [m].
         turns: rotations of the standing and of the landing foot.
 
     Returns:
-        Places [m], and for each step that leaves none (by its index) the cuts that say so.
+        Places [m], and, by index, the cuts of each step that leaves no place.
     """
     asked = _assemble(steps, displacements)
     middles = np.stack([0.0 * displacements, displacements], axis=1).reshape(-1, 3)
@@ -87,7 +87,7 @@ def _assemble(steps: list[Step], displacements: np.ndarray) -> _Asked:
 def _over_soles(
     asked: _Asked, middles: np.ndarray, half_size: tuple[float, float], turns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the place over each sole, of 25, with most vertical room, and where there is one."""
+    """Return the place over each sole, of 25, with most vertical room, and whether it is valid."""
     points = (_OVER_SOLE * half_size) @ turns[:, :2, :2].transpose(0, 2, 1) + middles[:, None]
     slack = asked.b[:, :, None] - asked.A[:, :, :2] @ points.transpose(0, 2, 1)
     slope = asked.A[:, :, 2, None]
@@ -107,7 +107,7 @@ def _over_soles(
 def _largest_margins(
     asked: _Asked, rows: np.ndarray, start: np.ndarray
 ) -> tuple[list[np.ndarray], list[np.ndarray | None]]:
-    """Maximise t over A c + t <= b; where t stays negative the duals are Farkas's proof.
+    """Maximise t over A c + t <= b; where t stays negative the duals are a proof by Farkas.
 
     Returns:
         A place for each of `rows`, and the weights of the constraints that refute it, or None.

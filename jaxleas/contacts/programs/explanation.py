@@ -1,4 +1,4 @@
-"""Why a step cannot be made: which family of constraints stands in the way, and by how much."""
+"""Why a step cannot be made: the family of constraints that prevents it, and by how much."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -24,11 +24,11 @@ LADDER = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
 
 @dataclass(frozen=True)
 class Blame:
-    """What would make a step possible.
+    """Changes that would make a step possible.
 
     Attributes:
-        short: for each family of constraints to blame, how much more of it suffices [m].
-        surface: of the scene that would do if it were a candidate, whole; empty if none.
+        short: for each family of constraints to blame, the relaxation that suffices [m].
+        surface: surface of the scene that would suffice as a candidate, whole; empty if none.
         in_time: whether every question was answered before the deadline.
     """
 
@@ -41,9 +41,9 @@ def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> st
     """Return a sentence on why `phase` is the first step that cannot be made.
 
     Args:
-        problem: one whose phases before `phase` can be made.
-        phase: the first that cannot.
-        deadline: of `time.perf_counter` [s].
+        problem: problem whose phases before `phase` can be made.
+        phase: index of the first phase that cannot be made.
+        deadline: time by `time.perf_counter` after which to stop [s].
     """
     failing = problem.phases[phase]
     blame = find_blame(problem.prefix(phase + 1), deadline)
@@ -72,8 +72,8 @@ def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
     """Relax each family of constraints, in the last phase alone, until the phases can be made.
 
     Args:
-        prefix: a problem of which all but the last phase can be made.
-        deadline: of `time.perf_counter` [s].
+        prefix: problem of which all but the last phase can be made.
+        deadline: time by `time.perf_counter` after which to stop [s].
     """
     families: tuple[Family, ...] = ("step",)
     if prefix.model == "two_com":
@@ -98,7 +98,7 @@ def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
 
 
 def _least(outcome: Callable[[float], Outcome]) -> float | None:
-    """Return the least amount of the ladder that suffices, by bisection."""
+    """Return the smallest amount of the ladder that suffices, by bisection."""
     failed, enough = -1, len(LADDER)
     while enough - failed > 1:
         middle = (failed + enough) // 2 if enough < len(LADDER) else len(LADDER) - 1
@@ -109,7 +109,7 @@ def _least(outcome: Callable[[float], Outcome]) -> float | None:
             return None
         elif answer == "infeasible":
             failed = middle
-        else:  # no answer: what is known to be enough
+        else:  # no answer: return the amount that is known to suffice
             break
     return LADDER[enough]
 
@@ -135,7 +135,7 @@ def with_wider(problem: ContactProblem, metres: float) -> ContactProblem:
 
 
 def _widened(surface: ContactSurface, metres: float) -> ContactSurface:
-    """Move each corner to where its two edges meet after both moved outwards."""
+    """Move each corner to where its two edges meet after both have moved outwards."""
     after, before = surface.edge_normals, np.roll(surface.edge_normals, 1, axis=0)
     along = (after + before) / (1.0 + np.einsum("vk,vk->v", after, before))[:, None]
     return ContactSurface(surface.vertices + metres * along)

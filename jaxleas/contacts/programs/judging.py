@@ -32,7 +32,7 @@ def judge_by_program(
     """Ask a program about one guide path.
 
     Where there is no plan for the whole path, the last configuration reached is that of the last
-    step of the longest prefix with a plan, found by dichotomic search. Standing beside the first
+    step of the longest prefix with a plan, found by binary search. Standing beside the first
     configuration already reaches it.
 
     Args:
@@ -71,7 +71,7 @@ def judge_by_program(
 
 
 class _Search:
-    """Plans for ever other prefixes of a problem, within one time limit.
+    """Plans for various prefixes of a problem, within one time limit.
 
     `made` counts the phases of the longest prefix that has a certified plan.
     """
@@ -84,7 +84,7 @@ class _Search:
         self.made, self.trouble = 0, ""
 
     def plan(self, phases: int) -> ContactPlan | None:
-        """Plan for the first phases; None, with `trouble`, if that is not decided."""
+        """Plan for the first phases; return None, and set `trouble`, if that is not decided."""
         left = max(self.deadline - time.perf_counter(), 1e-3)
         try:
             plan = self.program(self.problem.prefix(phases), left)
@@ -99,7 +99,7 @@ class _Search:
         return plan
 
     def outcome(self, prefix: ContactProblem) -> str:
-        """Answer the question of the dichotomic search."""
+        """Answer one question of the binary search."""
         plan = self.plan(len(prefix))
         return "failed" if plan is None else "optimal" if plan.feasible else "infeasible"
 
@@ -107,7 +107,7 @@ class _Search:
 def _problem(
     robot: str, scene: Scene, path: GuidePath, settings: PhaseSettings
 ) -> tuple[ContactProblem | None, NoGroundError | None]:
-    """Return the problem of as much of the path as has ground, and what ends it before its end."""
+    """Return the problem of the part of the path that has ground, and the error that ends it."""
     options = {
         "robot": robot,
         "model": settings.model,
@@ -138,7 +138,7 @@ def _is_set(settings: PhaseSettings) -> bool:
 
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
-    """Return the scene's surfaces that a foot can come near to on the way."""
+    """Return the scene's surfaces that a foot can come near to along the path."""
     walker = load_robot(robot)
     legs = [walker.limbs[index].range_of_motion.vertices[:, :2] for index in walker.feet]
     reach = max(float(np.linalg.norm(each, axis=1).max()) for each in legs)
@@ -169,7 +169,7 @@ def _verdict(
     plan: ContactPlan | None,
     reason: str,
 ) -> Verdict:
-    """Return a failure after so many steps, -1 for one without a start."""
+    """Return a failure after a number of steps; -1 stands for a path without a start."""
     kept = [0, *kept_configurations(len(path), settings.keep_every)][: len(path)]
     last = kept[steps] if steps >= 0 else -1
     return Verdict(

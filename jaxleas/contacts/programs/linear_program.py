@@ -16,13 +16,13 @@ class Program:
     """min cost . x, low <= x <= high, row_low <= A x <= row_high.
 
     Attributes:
-        cost: linear.
-        low: bounds of the variables.
-        high: likewise.
-        A: sparse rows.
-        row_low: bounds of the rows.
-        row_high: likewise.
-        integer: which variables are integer.
+        cost: linear cost of the variables.
+        low: lower bounds of the variables.
+        high: upper bounds of the variables.
+        A: sparse matrix of the rows.
+        row_low: lower bounds of the rows.
+        row_high: upper bounds of the rows.
+        integer: whether each variable is integer.
     """
 
     cost: Float[np.ndarray, " n"]
@@ -36,12 +36,12 @@ class Program:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """What HiGHS found.
+    """The result from HiGHS.
 
     Attributes:
-        outcome: "failed" stands for numerical trouble; "optimal" to within `GAP` with integers.
-        x: the variables; meaningful when optimal.
-        duals: of the rows.
+        outcome: "failed" means numerical trouble; "optimal" is within `GAP` for integer programs.
+        x: values of the variables; meaningful when optimal.
+        duals: duals of the rows.
     """
 
     outcome: Outcome
@@ -50,17 +50,18 @@ class Solution:
 
 
 TOLERANCE = 1e-9
-"""On rows and bounds of linear programs [m]."""
+"""Feasibility tolerance on rows and bounds of linear programs [m]."""
 GAP = 0.01
-"""An integer solution whose cost is within this fraction of the best possible will do."""
+"""An integer solution is accepted if its cost is within this fraction of the best possible."""
 
 
 def solve(program: Program, time_limit: float = np.inf) -> Solution:
     """Solve a program on one thread.
 
     Args:
-        program: what to solve.
-        time_limit: [s]; an integer solution found until then is returned, though not proved best.
+        program: program to solve.
+        time_limit: time limit [s]; an integer solution found by then is returned, though not proved
+            best.
     """
     if time_limit <= 0.0:
         return Solution("time_limit", np.zeros(0))
@@ -69,7 +70,7 @@ def solve(program: Program, time_limit: float = np.inf) -> Solution:
     highs.setOptionValue("threads", 1)
     highs.setOptionValue("time_limit", float(min(time_limit, 1e9)))
     is_mip = program.integer is not None and bool(program.integer.any())
-    if is_mip:  # the choices are easy to find: these two cost more than they bring
+    if is_mip:  # the choices are easy to find: these two cost more than they gain
         highs.setOptionValue("mip_heuristic_run_feasibility_jump", False)
         highs.setOptionValue("mip_detect_symmetry", False)
         highs.setOptionValue("mip_rel_gap", GAP)
@@ -96,7 +97,7 @@ _OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
 
 
 def _pass(program: Program, highs: highspy.Highs) -> None:
-    """Hand over arrays whole; the attributes of a HighsLp would copy them number by number."""
+    """Pass whole arrays; the attributes of a HighsLp would copy them number by number."""
     A = program.A
     integer = program.integer
     kinds = np.zeros(len(program.cost), np.int32) if integer is None else integer.astype(np.int32)

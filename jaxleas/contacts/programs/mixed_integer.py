@@ -1,4 +1,4 @@
-"""The mixed-integer program of T app. B.2, assembled: one surface a phase, footholds on it."""
+"""The mixed-integer program of T app. B.2, assembled: one surface per phase, footholds on it."""
 
 from typing import Literal
 
@@ -12,8 +12,8 @@ from jaxleas.contacts.programs.steps import INITIAL, Step
 
 Formulation = Literal["hull", "big_m"]
 LOOSER, SPARE = 1.5, 0.05
-"""A big-M is this many times the least possible, and so much more [m]: HiGHS may end with "solve
-error" where one is exactly tight."""
+"""A big-M is this many times the smallest possible value, plus this much [m]: HiGHS may end with
+"solve error" where one is exactly tight."""
 Candidates = list[tuple[str, ...]]
 
 
@@ -34,10 +34,10 @@ def assemble(
 
     Args:
         problem: the contact problem.
-        steps: of its phases, with cuts.
-        candidates: of each phase, pruned; none is empty.
-        formulation: how "p lies on surface j" is written.
-        targets: minimise the L1 distance to these; None: any feasible point.
+        steps: steps of the problem's phases, with cuts.
+        candidates: candidates of each phase, pruned; none is empty.
+        formulation: form of the constraint "p lies on surface j".
+        targets: places to minimise the L1 distance to; None: any feasible point.
         excluded: choices of surfaces that are known to fail.
 
     Returns:
@@ -87,7 +87,7 @@ def _columns(problem: ContactProblem, names: tuple[str, ...], formulation: Formu
 def _add_hull(
     problem: ContactProblem, names: tuple[str, ...], rows: Rows, begin: int, low: np.ndarray
 ) -> np.ndarray:
-    """p = sum l V; sum_v l_jv = z_j; sum z = 1 (or sum l = 1 with a single candidate)."""
+    """Add p = sum l V; sum_v l_jv = z_j; sum z = 1 (or sum l = 1 with a single candidate)."""
     corners = [problem.surfaces[name].vertices for name in names]
     weights = begin + 3 + np.arange(sum(len(each) for each in corners))
     low[weights] = 0.0
@@ -134,10 +134,10 @@ def add_step(
 
     Args:
         problem: the contact problem.
-        step: of the phase.
-        rows: gets the rows.
-        begin: the column of p_m's first coordinate.
-        starts: the same for every phase.
+        step: step of the phase.
+        rows: rows to append to.
+        begin: column of p_m's first coordinate.
+        starts: the same column for every phase.
     """
     for link in step.links:
         blocks, bound = [(begin + np.arange(3), link.A)], link.b
@@ -149,7 +149,7 @@ def add_step(
 
 
 def _add_targets(rows: Rows, starts: np.ndarray, targets: Targets) -> None:
-    """|p_xy - target| <= u, in either direction."""
+    """Add |p_xy - target| <= u, in either direction."""
     for index, point in enumerate(targets.points):
         xy = int(starts[index]) + np.arange(2)
         apart = int(starts[-1]) + 2 * index + np.arange(2)
@@ -160,7 +160,7 @@ def _add_targets(rows: Rows, starts: np.ndarray, targets: Targets) -> None:
 def _exclude(
     rows: Rows, candidates: Candidates, choices: list[np.ndarray], surfaces: tuple[str, ...]
 ) -> None:
-    """At least one phase chooses otherwise."""
+    """Require that at least one phase chooses another surface."""
     columns = [
         chosen[names.index(name)]
         for names, chosen, name in zip(candidates, choices, surfaces, strict=True)

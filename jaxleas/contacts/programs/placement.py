@@ -1,4 +1,4 @@
-"""Footholds on chosen surfaces: a linear program, with the centre of mass put back by cuts."""
+"""Footholds on chosen surfaces: a linear program, with cuts that stand for the centre of mass."""
 
 import time
 from dataclasses import dataclass
@@ -17,23 +17,23 @@ from jaxleas.contacts.programs.steps import INITIAL, Link, Step, rotation
 from jaxleas.types.errors import InputError
 
 MOST_MARGIN = 0.02
-"""More distance to spare than this [m] is not asked for."""
+"""Greatest distance to spare that the program aims for [m]."""
 LEAST_MARGIN = -1e-7
-"""Footholds that violate a constraint by more [m] are none (the certificate accepts 1e-6)."""
+"""Footholds that violate a constraint by more than this [m] are rejected (certificate: 1e-6)."""
 KEPT_MARGIN = 1e-6
-"""Distance to spare that a cost must leave, where there is so much: the solver's tolerance [m]."""
+"""Distance to spare that a cost must leave, where possible: the solver's tolerance [m]."""
 MAX_ROUNDS = 200
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Footholds on given surfaces, or the news that there are none.
+    """Footholds on given surfaces, or the result that there are none.
 
     Attributes:
-        outcome: "optimal" when there are some, "infeasible" when provably none.
-        steps: as given, with the cuts that were found on the way.
-        footholds: of each phase [m].
-        com: of each phase [m]; None for the model "feet".
+        outcome: "optimal" when there are footholds, "infeasible" when there are provably none.
+        steps: steps as given, with the cuts that were found on the way.
+        footholds: foothold of each phase [m].
+        com: places of the centre of mass in each phase [m]; None for the model "feet".
         blamed: where infeasible, phases whose surfaces together are impossible, whatever the
             surfaces of the others.
     """
@@ -47,10 +47,10 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class Targets:
-    """Where footholds should be, horizontally.
+    """Places that footholds should be near, horizontally.
 
     Attributes:
-        points: x, y of each phase [m].
+        points: x, y of the target of each phase [m].
         cost: "linear": sum of |x - x'| + |y - y'|; "quadratic": sum of squared distances.
     """
 
@@ -69,10 +69,10 @@ def place(
 
     Args:
         problem: the contact problem.
-        steps: of `make_steps`, with or without cuts.
-        surfaces: one a phase.
-        deadline: of `time.perf_counter` [s].
-        targets: minimise the distance to these, else maximise the least slack.
+        steps: steps from `make_steps`, with or without cuts.
+        surfaces: name of the surface of each phase.
+        deadline: time by `time.perf_counter` after which to stop [s].
+        targets: places to minimise the distance to; None: maximise the least slack.
     """
     for _ in range(MAX_ROUNDS):
         outcome, footholds, blamed = _place_feet(problem, steps, surfaces, deadline, targets)
@@ -90,7 +90,8 @@ def put_com(
     """Put the centre of mass over given footholds.
 
     Returns:
-        Its places [m], the steps with cuts for those that leave it none, and how many these are.
+        Its places [m], the steps with cuts for those that leave no place, and how many such
+        steps there are.
     """
     if problem.model != "two_com":
         return None, steps, 0
@@ -107,7 +108,7 @@ def put_com(
 def standing_point(
     problem: ContactProblem, link: Link, footholds: Float[np.ndarray, "n 3"]
 ) -> Float[np.ndarray, " 3"]:
-    """Return where a foot stands that does not move [m]."""
+    """Return where the foot of a link stands, which does not move [m]."""
     if link.standing != INITIAL:
         return footholds[link.standing]
     return problem.initial[link.effector].position
@@ -131,7 +132,7 @@ def _place_feet(
     columns = np.arange(2 * count).reshape(count, 2)
     slack = np.array([2 * count])
     rows = Rows(2 * count + 1)
-    owners = []  # the phases that a row is about: where it lands, where another foot stands
+    owners = []  # the phases that a row concerns: where it lands, where another foot stands
     for index, (plane, step) in enumerate(zip(planes, steps, strict=True)):
         inside = plane.edge_offsets - plane.edge_normals @ origin[index]
         ones = np.ones((len(inside), 1))
@@ -171,7 +172,7 @@ def _place_feet(
 
 
 def _to_blame(duals: Float[np.ndarray, " r"], owners: list[tuple[int, int]]) -> tuple[int, ...]:
-    """Return the phases of the rows with a dual: these rows alone leave no more slack."""
+    """Return the phases of the rows with a dual: these rows alone allow no more slack."""
     size = np.abs(duals)
     rows = np.flatnonzero(size > 1e-9 * size.max(initial=0.0))
     blamed = {phase for row in rows for phase in owners[row]} - {INITIAL}
@@ -203,7 +204,7 @@ def _nearest_quadratic(
     away = (targets.points - origin[:, :2]).ravel()
     G = sparse.csr_array(program.A @ back).toarray()
     length = np.linalg.norm(G, axis=1)
-    bounds = length > 1e-12  # a row without horizontal part is a constant
+    bounds = length > 1e-12  # a row without a horizontal part is a constant
     h = (program.row_high - G @ away)[bounds] / length[bounds]
     nearest = least_distance(G[bounds] / length[bounds, None], h)
     if nearest is None:

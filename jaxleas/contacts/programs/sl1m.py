@@ -64,10 +64,10 @@ def plan_sl1m(
 
     Args:
         problem: the contact problem.
-        max_combinations: of surfaces for the undecided phases, tried one after the other; 0: none
+        max_combinations: number of combinations of surfaces to try in the undecided phases; 0: none
             (the thesis's SL1M without heuristics), which plans where every phase is decided.
-        weights: of the slacks: "uniform", as published, or "guide": the guide path chooses.
-        time_limit: [s]; when it is over, the plan's status says "time_limit".
+        weights: weights of the slacks: "uniform", as published, or "guide": the guide path chooses.
+        time_limit: time limit [s]; when it is over, the plan's status says "time_limit".
         diagnose: when there is no plan, find the last phase for which SL1M has one.
         pruning: whether candidates that no step can reach are dropped first.
 

@@ -1,4 +1,4 @@
-"""What one step may be: its displacements from the standing feet, as half-spaces in the world."""
+"""The displacements that one step allows from the standing feet, as half-spaces in the world."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ from jaxtyping import Float
 from jaxleas.contacts.problem import ContactProblem
 
 INITIAL = -1
-"""Stands for "where the foot stood before the first phase" among indices of phases."""
+"""Index that means "where the foot stood before the first phase" among indices of phases."""
 
 Family = Literal["step", "com_reach", "com_over"]
 """Families of constraints on a step: relative reach of the feet (T eq. B.3), reach of the centre of
@@ -30,11 +30,11 @@ class Link:
     """The relation between the landing foot m and one standing foot o: A (p_m - p_o) <= b.
 
     Attributes:
-        effector: the one that stands.
-        standing: phase in which it landed, or INITIAL.
+        effector: name of the effector that stands.
+        standing: index of the phase in which it landed, or INITIAL.
         yaw: heading with which it stands [rad].
         A: unit rows, in world axes.
-        b: [m].
+        b: bounds of the rows [m].
     """
 
     effector: str
@@ -46,15 +46,15 @@ class Link:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """What a landing foot m owes to all standing feet.
+    """The constraints on a landing foot m from all standing feet.
 
-    With two feet there must besides be a centre of mass c with c - p_o in `com[i][0]` and c - p_m
+    With two feet there must also be a centre of mass c with c - p_o in `com[i][0]` and c - p_m
     in `com[i][1]`, for each i. Cuts that this implies are appended to the rows of the link.
 
     Attributes:
-        foot: effector that moves.
+        foot: name of the effector that moves.
         links: relation to each effector that stands.
-        com: for c_k0 and c_k1; empty for the model "feet".
+        com: sets for c_k0 and c_k1; empty for the model "feet".
     """
 
     foot: str
@@ -90,7 +90,7 @@ def make_steps(
 
     Args:
         problem: the contact problem.
-        relaxed: families of constraints that the *last* phase may violate by so much [m].
+        relaxed: amount by which the *last* phase may violate each family of constraints [m].
     """
     stances = {name: (INITIAL, pose.yaw) for name, pose in problem.initial.items()}
     steps = []

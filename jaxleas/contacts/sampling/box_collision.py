@@ -1,4 +1,4 @@
-"""Do turned boxes meet the ground's polygons? By separating axes, for many boxes at once."""
+"""Collisions of rotated boxes with the ground's polygons, by separating axes, for many boxes."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ from jaxleas.contacts.sampling.ground import Ground
 
 @dataclass(frozen=True)
 class Places:
-    """Boxes that are close together, so that only the polygons near there are looked at.
+    """Boxes that are close together, so that only the polygons near them are tested.
 
     Attributes:
-        first: index of each place's first box; the next ones up to the next place's follow it.
-        scene: which of the ground's scenes each place is in.
+        first: index of each place's first box; its boxes are those up to the next place's first.
+        scene: index of the ground's scene that each place is in.
     """
 
     first: Int[np.ndarray, " G"]
@@ -24,7 +24,7 @@ class Places:
     def of(
         cls, position: Float[np.ndarray, "M 3"], scene: Int[np.ndarray, " M"], each: int
     ) -> "Places":
-        """Return the runs of rows at one position, where each row has so many boxes."""
+        """Return the runs of rows at one position, where each row has `each` boxes."""
         new = np.ones(len(scene), dtype=bool)
         new[1:] = (position[1:] != position[:-1]).any(axis=1) | (scene[1:] != scene[:-1])
         rows = np.flatnonzero(new)
@@ -38,18 +38,18 @@ def boxes_meet_ground(
     ground: Ground,
     places: Places | None = None,
 ) -> Bool[np.ndarray, " N"]:
-    """Tell which boxes touch any polygon.
+    """Return which boxes touch any polygon.
 
     Box and polygon are convex: they are apart exactly if their projections are, on a face normal
     of the box, on the polygon's normal, or on a product of an edge of each. (The polygon's own
     in-plane edge normals are limits of those products.)
 
     Args:
-        centres: of the boxes, in the world [m].
-        rotations: whose columns are the boxes' axes.
-        half_sizes: along these axes [m].
-        ground: the polygons.
-        places: where boxes are close together; all in one place, in scene 0, if None.
+        centres: centres of the boxes, in the world [m].
+        rotations: rotations whose columns are the boxes' axes.
+        half_sizes: half sizes along these axes [m].
+        ground: polygons of the ground.
+        places: groups of boxes that are close together; one place in scene 0 if None.
     """
     if not len(centres):
         return np.zeros(0, dtype=bool)
@@ -100,7 +100,7 @@ def _meet(
     vertices: np.ndarray,
     normals: np.ndarray,
 ) -> Bool[np.ndarray, " M"]:
-    """Decide pairs of one box and one polygon; axis after axis, on the pairs still open."""
+    """Decide pairs of one box and one polygon, axis by axis, for the pairs still undecided."""
     local = (vertices - centres[:, None]) @ rotations  # [M, W, 3], in the box's frame
     turned = (normals[:, None] @ rotations)[:, 0]
     open_ = (local.min(axis=1) <= half).all(axis=1) & (local.max(axis=1) >= -half).all(axis=1)

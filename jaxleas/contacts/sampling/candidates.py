@@ -1,4 +1,4 @@
-"""Which samples of the data base come close to a surface from a root pose? (T 4.1.2)"""
+"""Samples of the data base that come close to a surface from a root pose (T 4.1.2)."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,14 +13,14 @@ from jaxleas.contacts.sampling.world import World
 
 @dataclass(frozen=True)
 class Aim:
-    """What the moving leg of each robot is wanted to do.
+    """The aim of the moving leg of each robot.
 
     Attributes:
-        roots: where the robots are.
-        limb: that moves: 0 left, 1 right.
-        target: the reference foot under the root some time ahead, mirrored to the left leg, in
-            the root frame [m].
-        direction: of the root's motion likewise, unit or zero.
+        roots: root poses of the robots.
+        limb: index of the limb that moves: 0 left, 1 right.
+        target: reference foot under the root some time ahead, mirrored to the left leg, in the
+            root frame [m].
+        direction: direction of the root's motion, mirrored likewise; a unit vector or zero.
     """
 
     roots: Roots
@@ -42,8 +42,8 @@ class Candidates:
     """Pairs of a sample and a surface, by robot and score.
 
     Attributes:
-        row: of the aim.
-        rank: 0 is the best of its row.
+        row: row of the aim.
+        rank: rank of the candidate; 0 is the best of its row.
         sample: index in the data base.
         surface: index of the ground's polygon.
     """
@@ -68,11 +68,12 @@ def near_candidates(world: World, aim: Aim) -> Candidates:
     """Return the samples near a surface, each row's best scores first.
 
     The samples lie in order of height: a surface's interval of heights below the root picks a
-    slice, of which the plane and the edges then choose. At most as many a row as are ever tried.
+    slice, of which the plane and the edges then select. At most as many per row are returned as are
+    ever tried.
 
     Args:
         world: robot, scene, settings.
-        aim: one row a robot.
+        aim: aim of the moving legs, one row per robot.
     """
     row, sample, surface = _near_pairs(world, aim)
     wish = Wish(sample, aim.target[row], aim.direction[row], world.ground.normals[surface])

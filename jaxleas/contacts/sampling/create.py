@@ -23,16 +23,16 @@ from jaxleas.contacts.sampling.two_point import com_exists
 from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import mass_moment
 
-_ROBUSTNESS_AT_FIRST = 3  # of the candidates that pass all else
+_ROBUSTNESS_AT_FIRST = 3  # candidates tested first, of those that pass all other tests
 
 
 @dataclass(frozen=True)
 class Created:
-    """New contacts, one row a robot.
+    """New contacts, one row per robot.
 
     Attributes:
-        found: whether there is one; the rest of the row means nothing where not.
-        stances: with the new contact in the place of the old.
+        found: whether there is a contact; the rest of the row has no meaning where not.
+        stances: stances with the new contact in place of the old one.
         com: centre of mass of the new posture in the world [m].
     """
 
@@ -43,7 +43,7 @@ class Created:
 
 @dataclass(frozen=True)
 class _Tried:
-    """Candidates that passed all but the robustness, best first within a row."""
+    """Candidates that passed all tests but robustness, best first within a row."""
 
     row: Int[np.ndarray, " M"]
     sole: Float[np.ndarray, "M 3"]
@@ -79,11 +79,11 @@ def create_contacts(
 
     Args:
         world: robot, scene, settings.
-        aim: the moving limbs, and where the roots are then.
-        stances: before the move; the other foot's contact is kept.
-        order: becomes `since` of the new contacts.
+        aim: the moving limbs, and the poses of the roots when they land.
+        stances: stances before the move; the other foot's contact is kept.
+        order: value for `since` of the new contacts.
         least_move: distance by which the contact must move [m].
-        tally: gets the number of places that each test leaves, in the order of the tests.
+        tally: receives the number of places that each test leaves, in the order of the tests.
     """
     count = len(aim)
     each = np.arange(count)
@@ -117,7 +117,7 @@ def create_contacts(
 
 
 def count_left(tally: dict[str, int] | None, test: str, left: int) -> None:
-    """Add to the places that a test left."""
+    """Add to the number of places that a test left."""
     if tally is not None:
         tally[test] = tally.get(test, 0) + left
 
@@ -193,7 +193,7 @@ def _take_first_robust(
 def with_contact(
     stances: Stances, limb: Int[np.ndarray, " N"], new: _Tried, order: Int[np.ndarray, " N"]
 ) -> Stances:
-    """Return stances (a fresh copy is changed) with one contact replaced in each row."""
+    """Return stances (a fresh copy) with one contact replaced in each row."""
     each = np.arange(len(limb))
     stances = replace(stances)
     stances.sole[each, limb], stances.rotation[each, limb] = new.sole, new.rotation
@@ -203,7 +203,7 @@ def with_contact(
 
 
 def put(stances: Stances, rows: Int[np.ndarray, " M"], new: Stances) -> None:
-    """Write stances into rows of others."""
+    """Write stances into some rows of others."""
     stances.sole[rows], stances.rotation[rows] = new.sole, new.rotation
     stances.surface[rows], stances.corners[rows] = new.surface, new.corners
     stances.since[rows] = new.since
@@ -217,7 +217,7 @@ def _two_points(
     sole: np.ndarray,
     rotation: np.ndarray,
 ) -> Bool[np.ndarray, " M"]:
-    """Tell whether the centre of mass can be over the standing foot with the other at `sole`."""
+    """Return whether the centre of mass can be over the standing foot, with the other at `sole`."""
     standing = other_leg(aim.limb[row])
     return com_exists(
         world.legs.com_in_foot,

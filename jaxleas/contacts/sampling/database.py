@@ -1,4 +1,4 @@
-"""25,000 leg configurations, drawn once, to be searched at every step (T 4.1.2)."""
+"""25,000 leg configurations, drawn once and searched at every step (T 4.1.2)."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -20,11 +20,11 @@ class LegDatabase:
 
     Attributes:
         legs: whose configurations these are.
-        drawn: number of configurations drawn, those of no use on walkable ground included.
-        angles: of the joints [rad].
-        soles: in the root frame, in order of z [m].
-        rotations: of the feet in the root frame.
-        manipulability: |det J|, as a share of the largest.
+        drawn: number of configurations drawn, including those of no use on walkable ground.
+        angles: joint angles [rad].
+        soles: positions of the soles in the root frame, in order of z [m].
+        rotations: rotations of the feet in the root frame.
+        manipulability: |det J|, as a share of the largest one.
         translation: J_v J_v^T of the sole's Jacobian [m^2], for the EFORT score.
         reach: largest horizontal distance of a sole from the root [m].
         heights: z of the soles, ascending [m].
@@ -62,13 +62,13 @@ def leg_database(robot: Robot, samples: int, seed: int) -> LegDatabase:
 def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
     """Draw configurations uniformly within the joint limits; the first is the reference.
 
-    Kept are those whose foot, where it is, can be laid on ground within 12 degrees of level by the
-    smallest rotation without leaving the joint limits: nothing else passes the projection later.
+    Those are kept whose foot, in its place, can be laid on ground within 12 degrees of level by the
+    smallest rotation without leaving the joint limits: no others pass the projection later.
 
     Args:
-        legs: the model.
-        samples: to draw.
-        seed: of the draw.
+        legs: model of the legs.
+        samples: number of configurations to draw.
+        seed: seed of the draw.
     """
     angles = np.random.default_rng(seed).uniform(legs.lower, legs.upper, (samples, legs.joints))
     angles[0] = legs.reference

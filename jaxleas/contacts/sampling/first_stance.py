@@ -21,18 +21,18 @@ from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.stance import Stances, no_stances, support_corners
 from jaxleas.contacts.sampling.world import World
 
-_FIRST_FEET = 8  # places tried for the left foot, where the reference posture does not do
+_FIRST_FEET = 8  # places tried for the left foot where the reference posture fails
 
 
 def first_stances(world: World, guides: KeptGuides) -> Created:
     """Return a robust stance at the first configuration of each guide path.
 
-    The feet go below their places in the reference posture; where that does not do, a few places
-    for the left foot are tried, each with the right foot's best.
+    The feet go below their places in the reference posture; where that fails, a few places for the
+    left foot are tried, each with the best place for the right foot.
 
     Args:
         world: robot, scene, settings.
-        guides: whose first configurations count.
+        guides: guide paths whose first configurations are used.
     """
     every = np.arange(len(guides.length))
     roots = guides.roots[guides.flat(every, 0 * every)]
@@ -116,7 +116,7 @@ def _stand_otherwise(
     stances.corners[:, 0] = support_corners(
         world.ground, sole, rotation, surface, world.sole_half_size
     )
-    # Nobody has to get into the first stance: the right foot "was" where the left one is.
+    # No swing leads into the first stance: the right foot "was" where the left one is.
     stances.sole[:, 1], stances.rotation[:, 1] = sole, rotation
     aim = guides.aim(guide, 0 * guide, 0 * guide + 1)
     made = create_contacts(world, aim, replace(stances), np.ones(len(good), dtype=np.int64))

@@ -1,4 +1,4 @@
-"""The polygons of scenes as arrays: what feet stand on and legs bump into."""
+"""The polygons of scenes as arrays: surfaces that feet stand on, obstacles for the legs."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -17,16 +17,16 @@ class Ground:
     """Convex polygons of one scene or several, surfaces first.
 
     Attributes:
-        names: of the polygons.
-        scene: of each polygon: robots meet only those of the scene that they are in.
-        walkable: how many of them, from the first, are surfaces.
-        vertices: padded by repeating the last one [m].
-        normals: unit.
-        offsets: of the planes: n . x = offset [m].
+        names: names of the polygons.
+        scene: scene of each polygon: robots meet only the polygons of their own scene.
+        walkable: number of surfaces; they come first among the polygons.
+        vertices: vertices, padded by repeating the last one [m].
+        normals: unit normals of the planes.
+        offsets: offsets of the planes: n . x = offset [m].
         inward: unit normals of the edges in the polygon's plane; zero where padded.
         inward_offsets: x lies inside where inward . x >= inward_offset for all edges [m].
-        low: corners of bounding boxes [m].
-        high: likewise [m].
+        low: lower corners of the bounding boxes [m].
+        high: upper corners of the bounding boxes [m].
     """
 
     names: tuple[str, ...]
@@ -43,18 +43,18 @@ class Ground:
     def inside(
         self, points: Float[np.ndarray, "N 3"], polygon: Int[np.ndarray, " N"]
     ) -> Bool[np.ndarray, " N"]:
-        """Tell which points, seen along the normal of their polygon, lie inside it."""
+        """Return which points, seen along the normal of their polygon, lie inside it."""
         distance = (self.inward[polygon] @ points[:, :, None])[:, :, 0]
         return np.all(distance >= self.inward_offsets[polygon], axis=1)
 
     def heights_at(
         self, points_xy: Float[np.ndarray, "N 2"], scene: Int[np.ndarray, " N"]
     ) -> Float[np.ndarray, "N S"]:
-        """Return the height of each surface over each point [m]; NaN beside it, or elsewhere.
+        """Return the height of each surface over each point [m]; NaN outside, or in another scene.
 
         Args:
-            points_xy: in the world [m].
-            scene: of each point.
+            points_xy: horizontal positions of the points in the world [m].
+            scene: scene of each point.
         """
         count = self.walkable
         normals, offsets = self.normals[:count], self.offsets[:count]
@@ -99,8 +99,8 @@ def ground_from(
 
     Args:
         polygons: names and vertices.
-        walkable: how many, from the first, are surfaces.
-        scene: of each; all of scene 0 if None.
+        walkable: number of surfaces; they come first among the polygons.
+        scene: scene of each polygon; all of scene 0 if None.
     """
     named = list(polygons)
     vertices = pack_polygons([polygon for _, polygon in named])

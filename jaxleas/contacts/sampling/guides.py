@@ -1,4 +1,4 @@
-"""Guide paths as the planner walks them: one configuration in five, and what lies ahead."""
+"""Guide paths for the planner: one configuration in five, and the root's pose ahead."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import leg_posture
 from jaxleas.types import GuidePath, InputError
 
-MOST_COORDINATE = 1e4  # a guide path further out [m] is given in other units
+MOST_COORDINATE = 1e4  # a guide path further out is given in other units [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,13 +21,13 @@ class KeptGuides:
     """The kept configurations of several guide paths, padded with the last of each.
 
     Attributes:
-        index: of each configuration in its guide path.
+        index: index of each configuration in its guide path.
         length: number of configurations of each path.
         roots: position and yaw, `[B * T]` rows.
-        ahead: the roots some time later, likewise.
-        direction: unit vector of the motion in the world, zero at a stand; likewise.
+        ahead: root poses some time later, in the same rows.
+        direction: unit vector of the motion in the world, zero at standstill, in the same rows.
         trunk_free: whether the trunk touches nothing.
-        reference_sole: of the left foot, in the root frame [m].
+        reference_sole: reference position of the left foot, in the root frame [m].
     """
 
     index: Int[np.ndarray, "B T"]
@@ -43,7 +43,7 @@ class KeptGuides:
         return guide * self.index.shape[1] + at
 
     def aim(self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray) -> Aim:
-        """Return what a moving foot is wanted to do at a configuration."""
+        """Return the aim of a moving foot at a configuration."""
         rows = self.flat(guide, at)
         roots, ahead, side = self.roots[rows], self.ahead[rows], SIDES[limb]
         reference = np.broadcast_to(self.reference_sole, (len(rows), 3))
@@ -59,12 +59,12 @@ class KeptGuides:
 def keep_configurations(
     world: World, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
 ) -> KeptGuides:
-    """Keep every N-th configuration, and the last, and judge the trunk at each.
+    """Keep every N-th configuration and the last, and judge the trunk at each.
 
     Args:
         world: robot, scene, settings.
-        guide_paths: at least one, each of them usable.
-        scene_index: which of the ground's scenes each is in.
+        guide_paths: guide paths to keep, at least one, each of them usable.
+        scene_index: index of the ground's scene that each path is in.
     """
     settings = world.settings
     kept = []
@@ -101,7 +101,7 @@ def keep_configurations(
 
 
 def trunk_is_free(world: World, roots: Roots) -> Bool[np.ndarray, " N"]:
-    """Tell at which root poses no box of the trunk touches the scene."""
+    """Return at which root poses no box of the trunk touches the scene."""
     free = np.ones(len(roots), dtype=bool)
     ones = np.ones(len(roots))
     turn = rotations_to_world(np.broadcast_to(np.eye(3), (len(roots), 3, 3)), roots.yaw, ones)

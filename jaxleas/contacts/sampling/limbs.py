@@ -20,12 +20,12 @@ def other_leg(limb: Int[np.ndarray, "*batch"]) -> Int[np.ndarray, "*batch"]:
 
 @dataclass(frozen=True)
 class Roots:
-    """Upright root poses, one a row.
+    """Upright root poses, one per row.
 
     Attributes:
-        position: in the world [m].
+        position: positions in the world [m].
         yaw: heading [rad].
-        scene: which of the ground's scenes each is in.
+        scene: index of the ground's scene that each root is in.
     """
 
     position: Float[np.ndarray, "N 3"]
@@ -43,15 +43,15 @@ class Roots:
 
 @dataclass(frozen=True)
 class PlacedLegs:
-    """Legs that reach for a foothold, one a row, in the world.
+    """Legs that reach for a foothold, one per row, in the world.
 
     Attributes:
-        roots: one a leg.
+        roots: root poses, one per leg.
         side: +1 left, -1 right.
-        angles: of the joints, in the left leg's convention [rad].
+        angles: joint angles, in the left leg's convention [rad].
         reachable: whether the foothold is in reach within the joint limits.
-        frames: of the links; of a right leg mirror images, whose second axis is reversed.
-        origins: of the joints [m].
+        frames: frames of the links; for a right leg mirror images, whose second axis is reversed.
+        origins: origins of the joints [m].
         sole: position of the sole's origin [m].
     """
 
@@ -119,14 +119,14 @@ def place_legs(
     sole: Float[np.ndarray, "N 3"],
     rotation: Float[np.ndarray, "N 3 3"],
 ) -> PlacedLegs:
-    """Let legs reach for soles given in the world.
+    """Make legs reach for soles given in the world.
 
     Args:
-        legs: the model.
-        roots: one a leg.
-        limb: 0 left, 1 right.
-        sole: where the soles shall be [m].
-        rotation: of the feet.
+        legs: model of the legs.
+        roots: root poses, one per leg.
+        limb: index of each limb: 0 left, 1 right.
+        sole: desired positions of the soles [m].
+        rotation: desired rotations of the feet.
     """
     side = SIDES[limb]
     local = to_left_root(sole - roots.position, roots.yaw, side)
@@ -145,7 +145,7 @@ def place_legs(
 
 
 def joint_angles(placed: PlacedLegs, legs: LegModel) -> Float[np.ndarray, "N J"]:
-    """Return the angles as the robot's own joints count them [rad]."""
+    """Return the angles in the convention of the robot's own joints [rad]."""
     return np.where(placed.side[:, None] > 0.0, placed.angles, placed.angles * legs.mirror_signs)
 
 
@@ -157,14 +157,14 @@ def legs_collide(
     *,
     feet: bool,
 ) -> Bool[np.ndarray, " M"]:
-    """Tell which of some legs touch the scene.
+    """Return which of some legs touch the scene.
 
     Args:
-        legs: the model.
+        legs: model of the legs.
         placed: all legs.
-        rows: those to be judged.
-        ground: the scene.
-        feet: whether feet count; one that keeps its contact has been judged before.
+        rows: indices of the legs to judge.
+        ground: polygons of the scene.
+        feet: whether feet count; a foot that keeps its contact has been judged before.
     """
     last = legs.joints - 1
     shapes = [each for each in legs.left.boxes if feet or each.link != last]
@@ -188,7 +188,7 @@ def legs_collide(
 
 
 def body_moments(legs: LegModel, roots: Roots) -> Float[np.ndarray, "N 3"]:
-    """Return mass times position of all that is not leg, in the world [kg m]."""
+    """Return mass times position of everything that is not leg, in the world [kg m]."""
     com = np.broadcast_to(legs.body.com, roots.position.shape)
     ones = np.ones(len(roots))
     return legs.body.mass * (to_world(com, roots.yaw, ones) + roots.position)

@@ -2,7 +2,7 @@
 
 It follows a guide path exactly: from each kept configuration to the next, contacts are kept, or one
 is broken and made anew, or, where that fails, one is repositioned at the configuration before.
-Guide paths are walked abreast, each at its own pace, so that NumPy works on all of them together.
+Guide paths are walked together, each at its own pace, so that NumPy works on all of them at once.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from jaxleas.robots import Robot, load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
-_LOOK = 3  # configurations at which contacts are judged together; most are kept that long
+_LOOK = 3  # configurations at which contacts are judged together; most last that long
 _ABREAST = 64  # guide paths walked together: more does not fit the cache
 
 
@@ -36,9 +36,9 @@ def plan_contacts(
     """Plan a robot's contacts along one guide path.
 
     Args:
-        scene: surfaces to stand on, obstacles to stay clear of.
-        guide_path: to be followed exactly.
-        settings: of the planner; the published ones by default.
+        scene: surfaces to stand on and obstacles to avoid.
+        guide_path: guide path to follow exactly.
+        settings: settings of the planner; the published ones by default.
         robot: robot with two legs; Talos by default.
 
     Raises:
@@ -69,14 +69,14 @@ def plan_over(
 ) -> list[SamplingPlan]:
     """Plan a robot's contacts along guide paths, each over one of several scenes, in one process.
 
-    Every plan is the one that `plan_contacts` makes; paths over different scenes, too, are walked
-    abreast.
+    Every plan is the one that `plan_contacts` makes; paths over different scenes are also walked
+    together.
 
     Args:
-        scenes: surfaces to stand on, obstacles to stay clear of.
-        guide_paths: to be followed exactly.
-        scene_index: of each guide path's scene.
-        settings: of the planner; the published ones by default.
+        scenes: surfaces to stand on and obstacles to avoid, for each scene.
+        guide_paths: guide paths to follow exactly.
+        scene_index: index of each guide path's scene.
+        settings: settings of the planner; the published ones by default.
         robot: robot with two legs; Talos by default.
 
     Returns:
@@ -101,9 +101,10 @@ def plan_over(
 
 
 class _Walk:
-    """Guide paths walked abreast.
+    """Guide paths that are walked together.
 
-    `at` is each path's configuration reached, `failures` those in a row, `ends` how it ended.
+    `at` is the configuration that each path reached, `failures` counts its failures in a row,
+    and `ends` says how it ended.
     """
 
     def __init__(
@@ -150,7 +151,7 @@ class _Walk:
         self._finish(good)
 
     def _go_on(self) -> tuple[np.ndarray, np.ndarray]:
-        """Keep all contacts as long as that goes; return who is blocked, and the legs that stay."""
+        """Keep contacts while possible; return the blocked paths, and the legs that can stay."""
         walking = np.flatnonzero(self.live)
         ahead = self.at[walking, None] + 1 + np.arange(_LOOK)
         exists = ahead < self.guides.length[walking, None]
@@ -181,7 +182,7 @@ class _Walk:
         return blocked[free], can_stay[free]
 
     def _step(self, blocked: np.ndarray, can_stay: np.ndarray) -> np.ndarray:
-        """Break one contact, the oldest first, and make it anew; return who could not."""
+        """Break one contact, the oldest first, and make it anew; return the paths that fail."""
         pending = np.arange(len(blocked))
         for turn in range(self.limbs):
             limb = self._by_age(blocked[pending], turn)
@@ -198,7 +199,7 @@ class _Walk:
         return blocked[pending]
 
     def _reposition(self, failed: np.ndarray) -> None:
-        """Move one foot at the configuration reached, the oldest contact first."""
+        """Move one foot at the last configuration reached, the oldest contact first."""
         self.failures[failed] += 1
         settings = self.world.settings
         enough = self.failures[failed] >= settings.max_tries
@@ -250,7 +251,7 @@ class _Walk:
         )
 
     def _accept(self, how, guide: np.ndarray, limb: np.ndarray, made: Created, at: np.ndarray):
-        """Take what was found; return for which paths that is."""
+        """Take the contacts that were found; return for which paths there is one."""
         done = made.found
         rows = guide[done]
         put(self.stances, rows, made.stances[done])

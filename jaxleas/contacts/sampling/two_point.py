@@ -1,4 +1,4 @@
-"""Can one foot be moved while the other stands? Two points for the centre of mass (T app. B).
+"""Whether one foot can move while the other stands: two points for the centre of mass (T app. B).
 
 The foot m moves while o stands. Quasi-statically the centre of mass stays above o's sole; before
 m leaves there must be a point c0 there which both feet reach at their old places, and after m has
@@ -24,16 +24,16 @@ def com_exists(
     other_rotation: Float[np.ndarray, "N 3 3"],
     side: Float[np.ndarray, " N"],
 ) -> Bool[np.ndarray, " N"]:
-    """Tell whether the centre of mass can be above the standing sole, in reach of both feet.
+    """Return whether the centre of mass can be above the standing sole, in reach of both feet.
 
     Args:
-        com_in_foot: polytope of the left foot; the right one's is its mirror image.
-        standing_sole: middle of the sole that carries [m].
-        standing_rotation: of that foot.
-        standing_corners: of the part of it that touches, counter-clockwise from above [m].
+        com_in_foot: polytope of the left foot; the right foot's one is its mirror image.
+        standing_sole: middle of the standing sole [m].
+        standing_rotation: rotation of the standing foot.
+        standing_corners: corners of the part of it that touches, counter-clockwise from above [m].
         other_sole: middle of the other sole [m].
-        other_rotation: of the other foot.
-        side: of the standing foot, +1 left, -1 right.
+        other_rotation: rotation of the other foot.
+        side: side of the standing foot, +1 left, -1 right.
     """
     normals, slack = _constraints(
         com_in_foot,
@@ -102,7 +102,7 @@ def _turned_faces(
 def _some_point_fits(
     normals: np.ndarray, slack: np.ndarray, corners: np.ndarray
 ) -> Bool[np.ndarray, " N"]:
-    """Try a few points above the standing sole: nearly always one of them will do."""
+    """Try a few points above the standing sole: nearly always one of them is valid."""
     middle = corners.mean(axis=1, keepdims=True)
     places = np.concatenate([middle, 0.5 * (corners + middle)], axis=1)[:, :, None]
     points = places + _HEIGHTS[:, None] * np.array([0.0, 0.0, 1.0])
