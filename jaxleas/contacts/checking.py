@@ -1,4 +1,4 @@
-"""What a plan is checked against, and what the check says."""
+"""The guide path that a plan is checked against, and the report of the check."""
 
 from pathlib import Path
 
@@ -50,14 +50,14 @@ def along_roots(problem: ContactProblem, robot: str | None = None) -> AskedGuide
 def check_postures(
     plan: Path, read: ContactPlan, asked: AskedGuide, what: str, picture: Path | None
 ) -> None:
-    """Certify a plan of postures, and print what was found.
+    """Certify a plan of postures, and print the result.
 
     Args:
         plan: file of the plan, for messages.
         read: the plan.
-        asked: guide path that it follows, scene and robot.
-        what: name of what it answers, for messages.
-        picture: file to draw the plan to, if any.
+        asked: guide path that it follows, with scene and robot.
+        what: name of the problem or guide that it answers, for messages.
+        picture: file to draw the plan to; None for no picture.
 
     Raises:
         NotCertifiedError: the plan violates a constraint.

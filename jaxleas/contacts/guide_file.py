@@ -15,7 +15,7 @@ def read_guide_path(path: str | Path, query: int = 0) -> GuidePath:
 
     Args:
         path: the .npz file.
-        query: which of its paths, counted from 0.
+        query: number of the path in the file, counted from 0.
 
     Raises:
         InputError: the file cannot be used, or has no such path.

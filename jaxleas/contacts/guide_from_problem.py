@@ -11,7 +11,8 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2
-"""Between two configurations at most [m] and [rad]; [s] apart, as guide paths of LEAS are."""
+"""Largest distance [m] and turn [rad] between two configurations, and their interval [s], as in
+guide paths of LEAS."""
 LOWER, HIGHER = 0.10, 0.03
 """At the start the root stands as high above the feet as the first root does above their middle,
 but at most this far below and above the robot's walking height [m]."""
@@ -23,10 +24,10 @@ def guide_from_problem(problem: ContactProblem) -> GuidePath:
     It starts above the middle between the feet's first places, heading as they do.
 
     Args:
-        problem: each of its phases has a root.
+        problem: problem in which each phase has a root.
 
     Raises:
-        InputError: a phase has none.
+        InputError: a phase has no root.
     """
     for index, phase in enumerate(problem.phases):
         if phase.root is None:
@@ -62,7 +63,7 @@ def scene_of_problem(problem: ContactProblem) -> Scene:
     """Return a problem's whole surfaces as a scene; walls, on which no foot stands, as obstacles.
 
     Raises:
-        InputError: there is nothing but walls.
+        InputError: all surfaces are walls.
     """
     whole = {name: problem.surfaces[name].vertices for name in problem.whole_surfaces}
     walls = {name: each for name, each in whole.items() if is_vertical(each)}

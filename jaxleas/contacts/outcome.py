@@ -10,7 +10,7 @@ from jaxleas.robots import load_robot
 from jaxleas.types import GuidePath
 
 FOR_PICTURE = 10.0
-"""Most time spent on drawing how far a failed plan could go [s]."""
+"""Time limit for drawing how far a failed plan could go [s]."""
 
 
 def write_outcome(

@@ -15,14 +15,14 @@ from jaxleas.types.errors import InputError
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a planner made of one guide path.
+    """A planner's result for one guide path.
 
     Attributes:
-        last_index: of the last configuration of the guide path that it reached; -1: not even the
-            first. It succeeded where this is the path's last.
-        steps: contacts made on the way.
-        reason: what stopped it, a sentence; needed where it did not succeed.
-        decided: False where it ran out of time: then it is neither a success nor a failure.
+        last_index: index of the last configuration of the guide path that it reached; -1: not even
+            the first. It succeeded if this is the path's last.
+        steps: number of contacts made along the path.
+        reason: reason why it stopped, a sentence; required where it did not succeed.
+        decided: False if it ran out of time: then the result is neither a success nor a failure.
     """
 
     last_index: int
@@ -43,14 +43,14 @@ class OwnPlanner(PlannerSettings):
         """Plan contacts along a guide path.
 
         Args:
-            scene: to walk on.
-            path: to be followed; every `keep_every`-th configuration, from the first, counts.
+            scene: scene to walk on.
+            path: guide path to follow; every `keep_every`-th configuration, from the first, counts.
         """
         raise NotImplementedError(f"{type(self).__name__} has no method judge(scene, path)")
 
 
 class JudgedByOwn(Planner):
-    """A planner of the user's own, as the registry gives it: judged path by path."""
+    """A planner of the user's own, in the form of the registry: it judges path by path."""
 
     def __init__(self, name: str, kind: type[OwnPlanner]) -> None:
         super().__init__(name)

@@ -1,4 +1,4 @@
-"""A planner's settings: chosen from what was given, and checked."""
+"""A planner's settings: selected from the given ones, and checked."""
 
 from collections.abc import Callable
 from typing import Any
@@ -29,7 +29,7 @@ def require_settings(planner: Planner, settings: PlannerSettings | None) -> Plan
 
 
 def settings_from(planner: Planner | str, **given: Any) -> Any:
-    """Return the settings that a planner judges by; None means its own default.
+    """Return the settings that a planner judges by; None stands for its own default.
 
     Args:
         planner: planner, or name of a built-in one.
@@ -43,7 +43,7 @@ def settings_from(planner: Planner | str, **given: Any) -> Any:
 
 
 def plan_settings_from(planner: Planner, **given: Any) -> Any:
-    """Return the settings of a single plan; None means the planner's own default.
+    """Return the settings of a single plan; None stands for the planner's own default.
 
     Args:
         planner: planner that will plan.

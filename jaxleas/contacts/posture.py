@@ -1,4 +1,4 @@
-"""Postures: where all feet stand at a configuration of the guide, and what came before."""
+"""Postures: places of all feet at a configuration of the guide, and how they came about."""
 
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -14,7 +14,7 @@ How = Literal["start", "kept", "stepped", "repositioned"]
 
 
 _OF_ALL = ("configuration", "how", "moved", "com")
-"""Keys of a posture in a file that are no foot's name."""
+"""Keys of a posture in a file that are not names of feet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,11 +22,11 @@ class Posture:
     """All feet in contact at one configuration of a guide path.
 
     Attributes:
-        configuration: of the guide, counted from 0.
-        how: the posture came about.
+        configuration: index of the guide's configuration, counted from 0.
+        how: way in which the posture came about.
         moved: name of the foot that was moved, such as "LF"; None at the start and where contacts
             are kept.
-        feet: where each stands: a point on its surface [m], and the foot's yaw [rad].
+        feet: place of each foot: a point on its surface [m], and the foot's yaw [rad].
         surfaces: name of each foot's surface.
         com: centre of mass in the world [m].
     """
@@ -40,7 +40,7 @@ class Posture:
 
 
 def posture_to_json(posture: Posture) -> dict[str, Any]:
-    """Return a posture as JSON has it."""
+    """Return a posture as a JSON value."""
     feet = {
         foot: {
             "position": posture.feet[foot].position.tolist(),
@@ -59,10 +59,10 @@ def posture_to_json(posture: Posture) -> dict[str, Any]:
 
 
 def posture_from_json(where: str, content: Any) -> Posture:
-    """Return the posture that JSON holds.
+    """Return the posture in a JSON value.
 
     Raises:
-        InputError: it is none; `where` names it.
+        InputError: the value is not a posture; the message names `where`.
     """
     try:
         feet = {str(foot): each for foot, each in content.items() if foot not in _OF_ALL}

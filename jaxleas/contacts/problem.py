@@ -1,4 +1,4 @@
-"""The contact problem: which effector moves when, onto which of which surfaces (T 5.1, B.1)."""
+"""The contact problem: the effector that moves in each phase, and its surfaces (T 5.1, B.1)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -17,10 +17,10 @@ TWO = 2  # effectors that the model two_com knows: the centre of mass is over on
 
 @dataclass(frozen=True, eq=False)
 class FootPose:
-    """Where an effector stands, its frame turned about the vertical alone.
+    """The pose of a standing effector, whose frame is turned about the vertical alone.
 
     Attributes:
-        position: of the middle of what touches in the world [m].
+        position: middle of the area that touches, in the world [m].
         yaw: heading [rad].
     """
 
@@ -36,7 +36,7 @@ class Phase:
         foot: name of the effector that moves, such as "LF"; the others stand.
         yaw: heading with which it lands [rad].
         candidates: names of the surfaces it may land on.
-        root: of the guide path, in the world [m], where there is one.
+        root: position of the guide path's root, in the world [m]; None if there is no guide.
     """
 
     foot: str
@@ -50,18 +50,18 @@ class ContactProblem:
     """Find a foothold for each phase.
 
     Attributes:
-        robot: its name.
+        robot: name of the robot.
         model: "feet" (relative foot polytopes only) or "two_com" (T app. B: two positions of the
-            centre of mass a phase besides).
-        surfaces: by name.
-        initial: where each effector stands before the first phase, in the robot's order.
-        phases: in order; the last one's candidates are the goal.
-        polytopes: how far a step and the centre of mass reach.
+            centre of mass per phase as well).
+        surfaces: surfaces by name.
+        initial: pose of each effector before the first phase, in the robot's order.
+        phases: phases in order; the candidates of the last one are the goal.
+        polytopes: reach of a step and of the centre of mass.
         foot_half_size: half length and half width of the sole [m].
-        parts: of surfaces that are part of another one: its name.
+        parts: for each surface that is part of another one, the name of that surface.
 
     Raises:
-        InputError: model "two_com" is asked for other than two effectors, or without its polytopes.
+        InputError: model "two_com" is given other than two effectors, or lacks its polytopes.
     """
 
     robot: str
@@ -103,7 +103,7 @@ class ContactProblem:
         return tuple(name for name in self.surfaces if name not in self.parts)
 
     def whole(self, name: str) -> str:
-        """Return the name of the surface that a surface is, or is part of."""
+        """Return the name of the whole surface that a surface is, or is part of."""
         return self.parts.get(name, name)
 
     def prefix(self, count: int) -> "ContactProblem":
@@ -111,7 +111,7 @@ class ContactProblem:
         return replace(self, phases=self.phases[:count])
 
     def with_candidates(self, candidates: "list[tuple[str, ...]]") -> "ContactProblem":
-        """Return the problem with other candidates, one tuple a phase."""
+        """Return the problem with other candidates, one tuple per phase."""
         phases = zip(self.phases, candidates, strict=True)
         return replace(
             self, phases=tuple(replace(phase, candidates=names) for phase, names in phases)

@@ -14,7 +14,7 @@ def reference_foothold(
     """Return the horizontal place of an effector under a root, at the height of the root [m].
 
     Args:
-        robot: robot whose reference configuration it is.
+        robot: robot in its reference configuration.
         effector: name of the effector.
         root: position of the root in the world [m].
         yaw: heading of the root [rad].

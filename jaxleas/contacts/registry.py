@@ -29,9 +29,9 @@ PLANNERS: Registry[type[Planner] | type[OwnPlanner]] = Registry(
     _require_planner,
 )
 DEFAULT_JUDGE = "sampling"
-"""Judges guide paths unless another planner is asked for."""
+"""Name of the planner that judges guide paths by default."""
 DEFAULT_PLANNER = "mip"
-"""Plans single problems and guide paths unless another is asked for."""
+"""Name of the planner that plans single problems and guide paths by default."""
 PlannerName = Annotated[str, PLANNERS]
 """Type of a command's option: its help lists the planners."""
 
@@ -52,25 +52,25 @@ def find_planner(name: str, allow: Collection[str] = ()) -> Planner:
 
 
 def title_of(name: str) -> str:
-    """Return a planner's title; a planner of the user's own, which may be gone, is its name."""
+    """Return a planner's title; for one of the user's own, which may no longer exist, its name."""
     return (find_planner(name).title if name in PLANNERS else "") or name
 
 
 def measures_of(name: str) -> frozenset[Measure]:
-    """Return what a planner reports of itself; of the user's own, which may be gone, nothing."""
+    """Return a planner's measures; for one of the user's own, which may no longer exist, none."""
     return find_planner(name).measures if name in PLANNERS else frozenset()
 
 
 def permit(config: Path, planner: str, said: str | None) -> tuple[str, ...]:
-    """Return what may be imported for a planner that a file asks for.
+    """Return the code that may be imported for a planner that a file names.
 
     Args:
-        config: the file.
-        planner: name of the planner that it asks for.
+        config: file that names the planner.
+        planner: name of the planner in the file.
         said: name given on the command line, if any.
 
     Raises:
-        InputError: the planner is code and was not said, or something else was said.
+        InputError: the planner is code and was not given on the command line, or another was.
     """
     if said is None and is_own(planner):
         raise InputError(
@@ -83,10 +83,10 @@ def permit(config: Path, planner: str, said: str | None) -> tuple[str, ...]:
 
 
 def require_planner_name(name: str) -> str:
-    """Return a name that may be a planner's; for configurations, whose code is asked for later.
+    """Return a name that may be a planner's; for configurations, whose code is permitted later.
 
     Raises:
-        ValueError: no planner can be called so.
+        ValueError: no planner can have this name.
     """
     if name in PLANNERS or re.fullmatch(r"[\w.]+:\w+", name):
         return name
@@ -97,7 +97,7 @@ def require_built_in(name: str) -> str:
     """Return the name of a planner that needs no permission.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the name is not a built-in planner's.
     """
     if name not in PLANNERS:
         raise ValueError(f"there is no planner {name!r} here; there are {', '.join(PLANNERS)}")

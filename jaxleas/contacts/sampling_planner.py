@@ -1,4 +1,4 @@
-"""The sampling-based planner in the registry: it follows guide paths, and walks them abreast."""
+"""The sampling-based planner in the registry: it follows guide paths, many at once."""
 
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
 from jaxleas.contacts.plan import ContactPlan
@@ -35,7 +35,7 @@ class Sampling(Planner):
         return plan_sampling(asked.guide, asked.scene, settings, time_limit=time_limit, robot=robot)
 
     def judge(self, asked: AskedGuides, settings: SamplingSettings) -> list[Verdict]:
-        """Judge guide paths, walked abreast."""
+        """Judge guide paths, all together."""
         robot = load_robot(asked.robot)
         plans = plan_over(asked.scenes, asked.paths, asked.scene_index, settings, robot)
         return [

@@ -1,4 +1,4 @@
-"""What every contact planner can be told when it judges guide paths."""
+"""Settings that every contact planner has when it judges guide paths."""
 
 from pydantic import PositiveInt
 

@@ -21,9 +21,9 @@ def contact_pose(
     or straight up where the heading runs along the normal, as before a wall.
 
     Args:
-        position: middle of what touches, in the world [m].
+        position: middle of the area that touches, in the world [m].
         yaw: heading about the vertical [rad].
-        normal: unit normal of the surface, away from it.
+        normal: unit normal of the surface, pointing away from it.
     """
     for ahead in (np.array([math.cos(yaw), math.sin(yaw), 0.0]), np.array([0.0, 0.0, 1.0])):
         first = ahead - (ahead @ normal) * normal
@@ -40,7 +40,7 @@ def stances_of(problem: ContactProblem, plan: ContactPlan) -> tuple[Stance, ...]
 
     Args:
         problem: contact problem.
-        plan: its plan; one that stops early gives the stances as far as it goes.
+        plan: plan of the problem; one that stops early gives the stances up to its end.
 
     Raises:
         InputError: an effector stands on no surface of the problem at the start.

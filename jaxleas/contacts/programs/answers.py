@@ -1,4 +1,4 @@
-"""From what a program found to a plan: certified, late, or with the reason why there is none."""
+"""Conversion of a program's result to a plan: certified, late, or with a reason for failure."""
 
 import time
 from collections.abc import Callable
@@ -20,10 +20,10 @@ def certified(
     placement: Placement,
     seconds: float,
 ) -> ContactPlan:
-    """Return a plan that is certified.
+    """Return a certified plan.
 
     Raises:
-        PlannerError: it is none: a bug of ours.
+        PlannerError: the plan fails its certificate: a bug of ours.
     """
     plan = ContactPlan(
         planner,
@@ -58,7 +58,7 @@ def diagnosed(
     deadline: float,
     exact: bool,
 ) -> ContactPlan:
-    """Add the last feasible phase and, where it is proved, why the next cannot be made."""
+    """Add the last feasible phase and, where proved, the reason why the next cannot be made."""
     last = last_feasible_phase(problem, judge, dead_phase)
     if last is None:
         return plan.but(reason=f"{plan.reason}; its time ran out before the failing step was found")

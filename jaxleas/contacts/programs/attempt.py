@@ -1,4 +1,4 @@
-"""SL1M (T 5.3): relax, keep what the L1 norm decided, enumerate by cost what is to blame."""
+"""SL1M (T 5.3): relax, keep the surfaces that the L1 norm decided, enumerate others by cost."""
 
 from dataclasses import dataclass
 
@@ -16,23 +16,23 @@ from jaxleas.contacts.programs.slack_weights import SlackWeights
 from jaxleas.contacts.programs.steps import Step, make_steps
 
 DECIDED = 1e-6
-"""A foothold this near to a surface [m] has selected it (the LP is solved to 1e-9)."""
+"""A foothold this near to a surface has selected it (the LP is solved to 1e-9) [m]."""
 MAX_COMBINATIONS = 2000
 
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """How far SL1M came.
+    """The result of an attempt by SL1M.
 
     Attributes:
         outcome: "optimal" for a plan; "infeasible" if the relaxation already is; else "not_found".
-        steps: with the cuts found on the way.
-        surfaces: of each phase.
-        placement: footholds and com.
+        steps: steps with the cuts found on the way.
+        surfaces: surface of each phase.
+        placement: footholds and centre of mass.
         undecided: phases that the relaxation left without a surface.
-        combinations: tried.
+        combinations: number of combinations tried.
         exhausted: whether every combination was tried, or ruled out by one that was.
-        relaxed: the relaxation's answer.
+        relaxed: answer of the relaxation.
     """
 
     outcome: Outcome | str
@@ -56,10 +56,10 @@ def attempt(
 
     Args:
         problem: the contact problem.
-        deadline: of `time.perf_counter` [s].
-        max_combinations: after which it gives up.
+        deadline: time by `time.perf_counter` after which to stop [s].
+        max_combinations: number of combinations after which it gives up.
         pruning: whether candidates that no step can reach are dropped first.
-        weights: of the slacks.
+        weights: weights of the slacks.
     """
     steps = with_first_cuts(problem, make_steps(problem), len(problem))
     candidates: Candidates = [phase.candidates for phase in problem.phases]
@@ -78,15 +78,16 @@ def search(
     max_combinations: int,
     weights: SlackWeights = "uniform",
 ) -> Attempt:
-    """Relax, take the nearest surfaces, then others by cost where a failure says so.
+    """Relax, take the nearest surfaces, then others by cost where a failure requires it.
 
     Args:
         problem: the contact problem.
-        steps: of its phases, with cuts.
-        candidates: of each phase, at least one each.
-        deadline: of `time.perf_counter` [s].
-        max_combinations: after which it gives up; 0: what the relaxation did not decide fails.
-        weights: of the slacks.
+        steps: steps of the problem's phases, with cuts.
+        candidates: candidates of each phase, at least one each.
+        deadline: time by `time.perf_counter` after which to stop [s].
+        max_combinations: number of combinations after which it gives up; 0: a problem that the
+            relaxation leaves undecided fails.
+        weights: weights of the slacks.
     """
     relaxed = relax(problem, steps, candidates, deadline, weights)
     if relaxed.outcome != "optimal":

@@ -1,6 +1,6 @@
-"""The centre of mass, eliminated: which displacements between the feet leave it a place.
+"""The centre of mass, eliminated: displacements between the feet that leave it a place.
 
-c_k0 and c_k1 occur in phase k alone, so that they only ask something of the displacement d = p_m -
+c_k0 and c_k1 occur in phase k alone, so that they only constrain the displacement d = p_m -
 p_o between the feet: that (p_o + C_o) and (p_m + C_m) intersect, C_o and C_m being where the centre
 of mass may lie from either foot. By Farkas, d must satisfy g . d <= h_o(g) + h_m(-g) for every
 direction g, where h is the support function. Planners start with a few directions and add, for a
@@ -24,8 +24,8 @@ def with_first_cuts(problem: ContactProblem, steps: list[Step], count: int) -> l
 
     Args:
         problem: the contact problem.
-        steps: of its phases.
-        count: how many get cuts, from the first on: all those whose constraints are complete.
+        steps: steps of the problem's phases.
+        count: number of steps, from the first, that get cuts: those whose constraints are complete.
     """
     if problem.model != "two_com":
         return steps
@@ -65,7 +65,7 @@ def _first_cuts(
 
 
 def _com_corners(problem: ContactProblem, name: str, over: bool) -> np.ndarray:
-    """Return the corners of where the centre of mass may be from a foot, over it or not."""
+    """Return corners of where the centre of mass may be from a foot, over it or not."""
     polytope = problem.polytopes.com[name]
     if not over:
         return polytope.vertices

@@ -1,8 +1,8 @@
 """Combinations of surfaces, cheapest first, learning from failures.
 
 When a combination fails, a linear program says which phases are to blame: whatever the others do,
-these surfaces together do not work. From then on such combinations are passed over, and of each
-only the neighbours that change one of the phases to blame are looked at. That loses none: on the
+these surfaces together do not work. From then on such combinations are skipped, and of each
+only the neighbours that change one of the phases to blame are visited. That loses none: on the
 way from a combination to one that works, some phase to blame has to change.
 
 So a phase that the relaxation decided keeps its surface until a failure blames it.
@@ -15,11 +15,11 @@ import numpy as np
 from jaxtyping import Float
 
 MOST_PASSED_OVER = 200_000
-"""Combinations looked at in all, tried or passed over, after which there are no more."""
+"""Number of combinations, tried or skipped, after which the search ends."""
 
 
 class Combinations:
-    """One surface a phase, cheapest sum of slacks first.
+    """One surface per phase, cheapest sum of slacks first.
 
     Attributes:
         exhausted: whether every combination has been yielded or refuted.
@@ -33,7 +33,7 @@ class Combinations:
         """Sort the candidates of each phase.
 
         Args:
-            candidates: of each phase.
+            candidates: candidates of each phase.
             slack: distance of the relaxed foothold from each of them [m].
         """
         self._options: list[list[tuple[float, str]]] = []
@@ -48,7 +48,7 @@ class Combinations:
         self.exhausted = False
 
     def __iter__(self) -> Iterator[tuple[str, ...]]:
-        """Yield combinations that nothing said by `refute` excludes."""
+        """Yield the combinations that no call of `refute` excludes."""
         for _ in range(MOST_PASSED_OVER):
             if not self._heap:
                 self.exhausted = True
@@ -61,7 +61,7 @@ class Combinations:
             self._look_at_neighbours(cost)
 
     def refute(self, phases: tuple[int, ...]) -> None:
-        """Say that the combination just yielded fails because of its surfaces in these phases."""
+        """Record that the last combination fails because of its surfaces in these phases."""
         ranks = tuple(self._now[phase] for phase in phases)
         self._refuted.setdefault(phases, set()).add(ranks)
 
@@ -74,7 +74,7 @@ class Combinations:
 
     def _look_at_neighbours(self, cost: float) -> None:
         blamed = self._to_change()
-        if blamed is None:  # it was tried, and nothing said about it: any phase may be to blame
+        if blamed is None:  # it was tried without a refutation: any phase may be to blame
             blamed = tuple(range(len(self._options)))
         for phase in blamed:
             options, rank = self._options[phase], self._now[phase] + 1

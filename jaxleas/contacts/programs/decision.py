@@ -1,4 +1,4 @@
-"""Is there a plan? Decided exactly: prune, mixed-integer program, placement, cuts, again."""
+"""Exact decision whether a plan exists: prune, mixed-integer program, placement, cuts, repeat."""
 
 import time
 from collections.abc import Mapping
@@ -16,23 +16,24 @@ from jaxleas.contacts.programs.pruning import prune
 from jaxleas.contacts.programs.steps import Family, Step, make_steps
 
 SEARCH_SHARE = 0.8
-"""Of the time left, for the search for surfaces at least cost; the rest is for the placement."""
+"""Share of the remaining time for the search for surfaces at least cost; the placement gets the
+rest."""
 
 
 START_COMBINATIONS = 8
-"""Of SL1M, before the mixed-integer program: most feasible problems end there, much sooner."""
+"""Number of SL1M's combinations to try first: most feasible problems end there, much sooner."""
 
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """The answer.
+    """The answer, with the plan if there is one.
 
     Attributes:
         outcome: "optimal" for a plan, "infeasible" for proof that there is none.
-        surfaces: of each phase.
-        placement: footholds and com.
-        dead_phase: where infeasible, a phase that certainly cannot be made, if pruning saw one.
-        programs: mixed-integer programs solved.
+        surfaces: surface of each phase.
+        placement: footholds and centre of mass.
+        dead_phase: where infeasible, a phase that certainly cannot be made, if pruning found one.
+        programs: number of mixed-integer programs solved.
     """
 
     outcome: Outcome
@@ -54,12 +55,13 @@ def decide(
 
     Args:
         problem: the contact problem.
-        deadline: of `time.perf_counter` [s].
-        formulation: of the mixed-integer program.
-        targets: for footholds; a quadratic cost is minimised on the surfaces that the linear one
-            chose, since HiGHS takes no quadratic cost with integers (so does T 5.2.3).
-        relaxed: families of constraints that the last phase may violate by so much [m].
-        start: try SL1M's first few combinations before any mixed-integer program (without cost).
+        deadline: time by `time.perf_counter` after which to stop [s].
+        formulation: formulation of the mixed-integer program.
+        targets: targets of the footholds; a quadratic cost is minimised on the surfaces that the
+            linear one chose, since HiGHS takes no quadratic cost with integers (as in T 5.2.3).
+        relaxed: amount by which the last phase may violate each family of constraints [m].
+        start: whether to try SL1M's first few combinations before any mixed-integer program
+            (without cost).
     """
     complete = len(problem) - (1 if relaxed else 0)
     steps = with_first_cuts(problem, make_steps(problem, relaxed), complete)

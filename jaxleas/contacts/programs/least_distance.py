@@ -11,14 +11,14 @@ from scipy.optimize import nnls
 def least_distance(
     G: Float[np.ndarray, "m n"], h: Float[np.ndarray, " m"]
 ) -> Float[np.ndarray, " n"] | None:
-    """Return argmin |u| over G u <= h, or None if numerics fail.
+    """Return argmin |u| over G u <= h, or None for numerical trouble.
 
     The dual is a non-negative least-squares problem: with E = [-G'; -h'] and f = (0, ..., 0, 1),
     the residual r = E y - f of its solution y gives u = -r_1..n / r_n+1.
 
     Args:
         G: unit rows; {u : G u <= h} must not be empty.
-        h: [m].
+        h: bounds of the rows [m].
     """
     size = G.shape[1]
     E = -np.concatenate([G, h[:, None]], axis=1).T

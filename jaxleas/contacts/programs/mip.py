@@ -63,13 +63,14 @@ def plan_mip(
         problem: the contact problem; `problem.without_guide()` for contact-before-motion.
         cost: "none": any plan, with distance to spare; else footholds near the reference ones
             beside the guide's root, by L1 or squared distance [m]; needs a root in each phase.
-        time_limit: [s]; when it is over, the plan's status says "time_limit".
-        diagnose: for an infeasible problem, find the last feasible phase and the reason.
+        time_limit: time limit [s]; when it is over, the plan's status says "time_limit".
+        diagnose: whether to find the last feasible phase and the reason for an infeasible problem.
         formulation: "big_m" (T 5.3, 5.4), or "hull", slower but without any big-M.
-        start: try SL1M's first combinations before the mixed-integer program: sooner, as exact.
+        start: whether to try SL1M's first combinations before the mixed-integer program: faster,
+            and as exact.
 
     Raises:
-        InputError: a cost is asked for, but the phases have no root.
+        InputError: a cost is requested, but the phases have no root.
         PlannerError: a bug of ours.
     """
     require_time_limit(time_limit)

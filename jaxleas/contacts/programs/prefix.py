@@ -1,4 +1,4 @@
-"""The last step that can be made, by dichotomic search (T 5.2.3)."""
+"""The last step that can be made, by binary search (T 5.2.3)."""
 
 from collections.abc import Callable
 
@@ -14,10 +14,10 @@ def last_feasible_phase(
     """Return the last phase up to which a plan exists; -1 if not even the first can be made.
 
     Args:
-        problem: one that has no plan.
-        can_be_made: judges the problem of the first phases; "optimal" means yes. If the first n
-            phases have a plan, so have the first n - 1: n is found in log2 questions.
-        infeasible_phase: a phase known to be impossible, if any; by default the last.
+        problem: problem that has no plan.
+        can_be_made: function that judges the problem of the first phases; "optimal" means yes. If
+            the first n phases have a plan, so have the first n - 1: n is found in log2 questions.
+        infeasible_phase: index of a phase known to be impossible; by default the last.
 
     Returns:
         The phase's index, or None if a question was not answered in time.

@@ -1,4 +1,4 @@
-"""Presolve: candidate surfaces that no step can reach, or from which none leads on, go."""
+"""Presolve: drop candidate surfaces that no step can reach, or from which none leads on."""
 
 import numpy as np
 from jaxtyping import Bool
@@ -7,15 +7,16 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.steps import INITIAL, Link, Step
 
 SAFETY = 1e-6
-"""A surface goes only if a step to it would violate a half-space by more than this [m]."""
+"""A surface is dropped only if a step to it would violate a half-space by more than this [m]."""
 
 
 def prune(problem: ContactProblem, steps: list[Step]) -> list[tuple[str, ...]]:
     """Return the candidates of each phase that may take part in a plan.
 
-    A pair of surfaces is impossible if one half-space of the step's polytope separates them; a
-    surface goes if, for a foot that stands, it is in no possible pair with the phase in which that
-    one landed, then (backwards) after. An empty tuple for phase k proves that it cannot be made.
+    A pair of surfaces is impossible if one half-space of the step's polytope separates them. A
+    surface is dropped if, for a foot that stands, it is in no possible pair with the phase in which
+    that foot landed; then likewise backwards. An empty tuple for phase k proves that the phase
+    cannot be made.
     """
     pairs = [
         [_possible_pairs(problem, phase.candidates, link) for link in step.links]
@@ -48,7 +49,7 @@ def _possible_pairs(
         high_before = (link.A @ problem.initial[link.effector].position)[None, :]
     else:
         _, high_before = _ranges(problem, problem.phases[link.standing].candidates, link)
-    least = low_now[None, :, :] - high_before[:, None, :]  # of each row over the pair
+    least = low_now[None, :, :] - high_before[:, None, :]  # for each row, over the pair
     return np.all(least <= link.b + SAFETY, axis=-1)
 
 

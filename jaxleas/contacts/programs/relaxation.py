@@ -1,4 +1,4 @@
-"""SL1M's relaxation (T eq. 5.9, 5.10): how far each foothold is from each candidate, in metres."""
+"""SL1M's relaxation (T eq. 5.9, 5.10): distance of each foothold from each candidate, in metres."""
 
 import time
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ class Relaxed:
 
     Attributes:
         outcome: "infeasible" proves that there is no plan.
-        steps: as given, with the cuts that were found on the way.
-        footholds: of each phase [m].
+        steps: steps as given, with the cuts that were found on the way.
+        footholds: foothold of each phase [m].
         slack: alpha of each candidate of each phase [m]: its distance, and 0 on the surface.
     """
 
@@ -47,10 +47,10 @@ def relax(
 
     Args:
         problem: the contact problem.
-        steps: of its phases, with cuts.
-        candidates: of each phase; a single one is a hard constraint.
-        deadline: of `time.perf_counter` [s].
-        weights: of the slacks, see `slack_weights`.
+        steps: steps of the problem's phases, with cuts.
+        candidates: candidates of each phase; a single one is a hard constraint.
+        deadline: time by `time.perf_counter` after which to stop [s].
+        weights: weights of the slacks, see `slack_weights`.
     """
     program, starts = _assemble(
         problem, steps, candidates, slack_weights(problem, candidates, weights)

@@ -1,4 +1,4 @@
-"""What the programs can be told: how a guide becomes a problem, and how one problem is planned."""
+"""Settings of the programs: how a guide becomes a problem, and how one problem is planned."""
 
 from typing import Annotated, Literal
 

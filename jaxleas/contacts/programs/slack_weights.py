@@ -26,11 +26,11 @@ def slack_weights(
 
     Args:
         problem: the contact problem.
-        candidates: of each phase.
-        weights: which.
+        candidates: candidates of each phase.
+        weights: kind of weights.
 
     Raises:
-        InputError: a phase has no root for the guide's choice.
+        InputError: a phase lacks the root that the guide's choice needs.
     """
     rows = [np.ones(len(names)) for names in candidates]
     if weights == "uniform":
@@ -47,7 +47,7 @@ def slack_weights(
 
 
 def _preferred(problem: ContactProblem, names: tuple[str, ...], phase: Phase) -> int:
-    """Return the candidate nearest to the foot's place beside the root; of equals the highest."""
+    """Return the candidate nearest to the foot's place beside the root; the highest of equals."""
     assert phase.root is not None
     place = reference_foothold(load_robot(problem.robot), phase.foot, phase.root, phase.yaw)
     found = [nearest_below(problem.surfaces[name], place) for name in names]

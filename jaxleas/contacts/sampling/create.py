@@ -193,7 +193,10 @@ def _take_first_robust(
 def with_contact(
     stances: Stances, limb: Int[np.ndarray, " N"], new: _Tried, order: Int[np.ndarray, " N"]
 ) -> Stances:
-    """Return stances (a fresh copy) with one contact replaced in each row."""
+    """Return stances with one contact replaced in each row.
+
+    The arrays of `stances` are changed in place: pass a fresh copy.
+    """
     each = np.arange(len(limb))
     stances = replace(stances)
     stances.sole[each, limb], stances.rotation[each, limb] = new.sole, new.rotation

@@ -19,7 +19,7 @@ class LegDatabase:
     """Configurations of the left leg whose foot can be laid on walkable ground, by height.
 
     Attributes:
-        legs: whose configurations these are.
+        legs: model of the legs that have these configurations.
         drawn: number of configurations drawn, including those of no use on walkable ground.
         angles: joint angles [rad].
         soles: positions of the soles in the root frame, in order of z [m].

@@ -1,4 +1,4 @@
-"""Postures of many guide paths, written down as they come about, handed out by path."""
+"""Postures of many guide paths, recorded in the order they are made, returned by path."""
 
 from collections.abc import Sequence
 from dataclasses import fields
@@ -15,7 +15,7 @@ _HOWS: tuple[How, ...] = ("start", "kept", "stepped", "repositioned")
 
 
 class Diary:
-    """Postures in the order in which they came about."""
+    """Postures in the order in which they were made."""
 
     def __init__(self) -> None:
         self._entries: list[tuple] = []
@@ -29,7 +29,7 @@ class Diary:
         stances: Stances,
         com: np.ndarray,
     ) -> None:
-        """Note one posture of each of some guide paths."""
+        """Record one posture for each of some guide paths."""
         if len(guide):
             every = np.arange(len(guide))
             kind = np.full(len(guide), _HOWS.index(how))
@@ -39,13 +39,13 @@ class Diary:
     def plans(
         self, world: World, guides: KeptGuides, ends: Sequence[tuple[Ending, str]], begun: float
     ) -> list[SamplingPlan]:
-        """Return what was noted of each guide path, with the robustness of every posture.
+        """Return the record of each guide path, with the robustness of every posture.
 
         Args:
             world: robot, scene, settings.
-            guides: that were walked.
-            ends: ending of each, and the sentence that says what stopped it.
-            begun: when, by `perf_counter`.
+            guides: guide paths that were followed.
+            ends: ending of each path, and the sentence that says what stopped it.
+            begun: time of the start, by `perf_counter` [s].
         """
         names = world.ground.names
         guide, at, kind, moved, com, stances = self._columns()

@@ -1,4 +1,4 @@
-"""Why neither foot went on: how many places each of the planner's tests left."""
+"""Why neither foot makes a contact: the number of places that each of the planner's tests left."""
 
 import numpy as np
 
@@ -14,9 +14,9 @@ def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) ->
 
     Args:
         world: robot, scene, settings.
-        guides: the guide path.
-        stances: where its feet stand.
-        at: number of the kept configuration that was not reached.
+        guides: guide path of the robot.
+        stances: stance of its feet.
+        at: index of the kept configuration that was not reached.
     """
     guide, here = np.zeros(1, dtype=np.int64), np.array([at])
     kept = maintain_contacts(world, guides.roots[guides.flat(guide, here)], stances[guide])
@@ -38,7 +38,7 @@ def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) ->
 
 
 def _first_failed(tally: dict[str, int], other: str) -> str:
-    """Return what left no place: the tally counts those left by each test, in order."""
+    """Return the test that left no place: the tally counts those left by each test, in order."""
     before = 0
     for test, left in tally.items():
         if left == 0:

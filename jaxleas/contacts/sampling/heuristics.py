@@ -1,4 +1,4 @@
-"""Which candidate first? The four scores of the published planner."""
+"""Order of the candidates: the four scores of the published planner."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ STATIC_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Wish:
-    """What a score may look at, one row a candidate, mirrored to the left leg, in the root frame.
+    """Input of a score, one row per candidate, mirrored to the left leg, in the root frame.
 
     Attributes:
-        sample: its index in the data base.
+        sample: index of the candidate's sample in the data base.
         target: the reference foot under the root some time ahead [m].
-        direction: unit, of the root's motion; zero where it stands.
-        normal: of the surface.
+        direction: unit vector of the root's motion; zero at standstill.
+        normal: normal of the surface.
     """
 
     sample: Int[np.ndarray, " N"]

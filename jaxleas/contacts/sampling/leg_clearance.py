@@ -1,4 +1,4 @@
-"""Do the two legs bump into each other? Their capsules, such as foot and shank, tell."""
+"""Collision of the two legs with each other, by their capsules, such as foot and shank."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -21,7 +21,7 @@ def legs_touch(
     one: Float[np.ndarray, "N C 2 3"],
     other: Float[np.ndarray, "N C 2 3"],
 ) -> Bool[np.ndarray, " N"]:
-    """Tell whether two legs, given by their segments, are nearer than their radii allow.
+    """Return whether two legs, given by their segments, are nearer than their radii allow.
 
     Args:
         legs: pair of legs.
@@ -44,7 +44,7 @@ def legs_touch(
 def segment_distance(
     first: Float[np.ndarray, "N 2 3"], second: Float[np.ndarray, "N 2 3"]
 ) -> Float[np.ndarray, " N"]:
-    """Return the distance of two segments that are no points [m] (Ericson 2005, sec. 5.1.9)."""
+    """Return the distance of two segments, none of them a point [m] (Ericson 2005, sec. 5.1.9)."""
     d1, d2 = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     between = first[:, 0] - second[:, 0]
     a, e, b = (d1 * d1).sum(axis=1), (d2 * d2).sum(axis=1), (d1 * d2).sum(axis=1)

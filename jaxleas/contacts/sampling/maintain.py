@@ -1,4 +1,4 @@
-"""Keep the contacts while the root moves on: within reach, clear of everything, robust?"""
+"""Keep the contacts while the root moves on: within reach, free of collisions, robust."""
 
 from dataclasses import dataclass
 
@@ -19,11 +19,11 @@ from jaxleas.robots.legs import mass_moment
 
 @dataclass(frozen=True)
 class Maintained:
-    """Contacts kept at new root poses, one row a robot.
+    """Contacts kept at new root poses, one row per robot.
 
     Attributes:
         limb: whether each leg alone can keep its contact.
-        both: whether the posture as a whole stands: legs clear of each other, robust.
+        both: whether the posture as a whole is valid: legs clear of each other, robust.
         com: centre of mass in the world [m].
     """
 
@@ -40,8 +40,8 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
 
     Args:
         world: robot, scene, settings.
-        roots: where the robots would be.
-        stances: their contacts.
+        roots: root poses to judge.
+        stances: contacts of the robots.
     """
     count, limbs = len(roots), stances.sole.shape[1]
     limb = np.tile(np.arange(limbs), count)

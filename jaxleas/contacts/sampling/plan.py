@@ -1,4 +1,4 @@
-"""What the sampling-based planner answers for one guide path."""
+"""The sampling-based planner's answer for one guide path."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -14,24 +14,25 @@ neither foot finds a contact that leads on; too many repositions; no time left."
 
 @dataclass(frozen=True, eq=False)
 class SamplingPlan:
-    """Postures in double support along a guide path, and how far they got.
+    """Postures in double support along a guide path, and how far they reach.
 
     Attributes:
         ending: why the plan ends; "reached" is success.
-        reason: what stopped the plan, a sentence; empty on success.
-        last_index: of the last configuration reached in the guide path; -1 if none.
-        last_kept: likewise among the kept configurations.
+        reason: reason why the plan stopped, a sentence; empty on success.
+        last_index: index in the guide path of the last configuration reached; -1 if none.
+        last_kept: its index among the kept configurations.
         kept: number of kept configurations.
-        index: of each posture's configuration in the guide path.
-        how: each posture came about.
+        index: index of each posture's configuration in the guide path.
+        how: way in which each posture came about.
         moved: limb that was moved for each posture; -1 for none (or both, at the start).
-        soles: of left and right foot, in the world [m].
-        rotations: of the feet in the world.
+        soles: positions of left and right sole, in the world [m].
+        rotations: rotations of the feet in the world.
         surfaces: names of the surfaces of left and right foot.
         com: centre of mass in the world [m].
-        robustness: of equilibrium [N].
-        repositions: how many postures are.
-        seconds: spent on this guide path, an equal share where several were planned together.
+        robustness: robustness of equilibrium of each posture [N].
+        repositions: number of postures that are repositions.
+        seconds: time spent on this guide path, an equal share where several were planned together
+            [s].
     """
 
     ending: Ending

@@ -1,4 +1,4 @@
-"""What the sampling-based planner can be told (T 4.1.4)."""
+"""Settings of the sampling-based planner (T 4.1.4)."""
 
 from typing import Annotated, Literal
 

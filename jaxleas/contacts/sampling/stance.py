@@ -1,4 +1,4 @@
-"""The feet of many robots on the ground, and how well they stand."""
+"""The feet of many robots on the ground, and the area that carries them."""
 
 from dataclasses import dataclass
 
@@ -11,13 +11,13 @@ from jaxleas.contacts.sampling.limbs import SIDES
 
 @dataclass(frozen=True, eq=False)
 class Stances:
-    """Contacts of left and right foot, one row a robot.
+    """Contacts of left and right foot, one row per robot.
 
     Attributes:
         sole: position of the middle of the sole, in the world [m].
-        rotation: of the foot in the world; the third column is the surface's normal.
-        surface: index of the ground's polygon; -1 while there is none.
-        corners: of the part of the sole that is over its surface, in the world [m].
+        rotation: rotation of the foot in the world; the third column is the surface's normal.
+        surface: index of the ground's polygon; -1 without a contact.
+        corners: corners of the part of the sole that is over its surface, in the world [m].
         since: order in which contacts were made: the smaller, the older.
     """
 
@@ -43,7 +43,7 @@ class Stances:
 
 
 def no_stances(count: int) -> Stances:
-    """Return stances without contacts, to be written into."""
+    """Return stances without contacts, to be filled in."""
     limbs = len(SIDES)
     return Stances(
         sole=np.zeros((count, limbs, 3)),
@@ -61,16 +61,16 @@ def support_corners(
     surface: Int[np.ndarray, " N"],
     half_size: tuple[float, float],
 ) -> Float[np.ndarray, "N 4 3"]:
-    """Return the sole's corners, each drawn in towards its middle until it is over the surface.
+    """Return the sole's corners, each moved towards its middle until it is over the surface.
 
-    The four points span part of what really touches: never more than there is.
+    The four points span part of the area that really touches, never more.
 
     Args:
-        ground: the scene.
+        ground: polygons of the scene.
         sole: middle of the sole, over the surface [m].
-        rotation: of the foot.
-        surface: that it stands on.
-        half_size: of the sole along x and y [m].
+        rotation: rotation of the foot.
+        surface: index of the surface that it stands on.
+        half_size: half length and half width of the sole [m].
     """
     signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * half_size
     reach = signs @ rotation[:, :, :2].transpose(0, 2, 1)  # [N, corner, 3]

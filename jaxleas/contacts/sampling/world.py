@@ -1,4 +1,4 @@
-"""All that a plan is made in and with: robot, data base, scene, settings."""
+"""The world of a plan: robot, data base, scene, settings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,11 +23,11 @@ class World:
     """Robot, data base, scenes and settings.
 
     Attributes:
-        robot: trunk boxes, friction, size of the soles.
-        legs: their kinematics and masses.
+        robot: robot, with its trunk boxes, friction and size of the soles.
+        legs: kinematics and masses of the legs.
         database: leg configurations.
-        ground: the polygons of the scenes.
-        settings: of the planner.
+        ground: polygons of the scenes.
+        settings: settings of the planner.
     """
 
     robot: Robot
@@ -48,7 +48,7 @@ class World:
         return robustness_of(self._contact_points(stances), com, mass=self.legs.mass)
 
     def is_robust(self, stances: Stances, com: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"]:
-        """Tell which postures have the robustness that the settings ask for."""
+        """Return which postures have the robustness that the settings require."""
         least = self.settings.least_robustness
         robust, missing = decide_robustness(
             self._contact_points(stances), com, mass=self.legs.mass, least=least
