@@ -23,7 +23,7 @@ class AgainstPlanner:
         return [folder.policy]
 
     def practise(self, number: int, before: Practised, say: Say) -> Practised:
-        """Return what the round ends with; what is in its folder is not done again."""
+        """Return the result of the round; what is already in its folder is not done again."""
         place = self.place
         folder = place.folder.round(number)
         if not folder.practised.is_file():

@@ -1,4 +1,4 @@
-"""A round against a surrogate: the planner judges guide paths, a network learns, PPO goes on."""
+"""A round against a surrogate: the planner judges guide paths, a network learns, then PPO runs."""
 
 import time
 from pathlib import Path
@@ -27,14 +27,14 @@ class AgainstSurrogate:
 
     def __init__(self, place: Workplace) -> None:
         self.place = place
-        self._surrogate: Surrogate | None = None  # of the round before: chooses whom to ask about
+        self._surrogate: Surrogate | None = None  # of the round before: chooses what to ask about
 
     def products(self, folder: RoundFolder) -> list[Path]:
         """Return the files of a round that are its result."""
         return [folder.policy, folder.surrogate]
 
     def practise(self, number: int, before: Practised, say: Say) -> Practised:
-        """Return what the round ends with; what is in its folder is not done again."""
+        """Return the result of the round; what is already in its folder is not done again."""
         place = self.place
         folder = place.folder.round(number)
         labelled = self._label(number, folder, before.policy, say)

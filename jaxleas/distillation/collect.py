@@ -24,9 +24,9 @@ class Walks:
     """N recorded walks of T steps.
 
     Attributes:
-        motion: of the roots, [N, T+1].
-        valid: every configuration up to this one satisfies R* and C.
-        map_index: terrain of each.
+        motion: motions of the roots, [N, T+1].
+        valid: whether every configuration up to this one satisfies R* and C.
+        map_index: terrain of each walk.
     """
 
     motion: RootMotion
@@ -54,8 +54,8 @@ class WalksWanted:
     Attributes:
         count: number of walks.
         steps: steps of each walk.
-        disturbances: standard deviations of the disturbances, one a walk in turn, in units of the
-            action's range; 0 leaves a walk alone.
+        disturbances: standard deviations of the disturbances, one per walk in turn, in units of
+            the action's range; 0 leaves a walk undisturbed.
     """
 
     count: int
@@ -72,8 +72,8 @@ def collect(
 ) -> Walks:
     """Walk robots with a policy, some of them disturbed.
 
-    A planner's limits show where the policy does not go of itself, so disturbances of several
-    strengths are added to its actions, each held for a while: one kind a robot, in turn.
+    A planner's limits show where the policy does not go by itself, so disturbances of several
+    strengths are added to its actions, each held for a while: one kind per robot, in turn.
 
     Args:
         env: steering task; its condition ends a walk.

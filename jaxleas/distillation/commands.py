@@ -17,12 +17,12 @@ def distill(
     """Refine a policy and a surrogate in turn, judged by the exact contact planner.
 
     Args:
-        config: of the distillation, YAML.
-        out: folder to work in; the same command goes on where it was interrupted.
+        config: configuration of the distillation, YAML.
+        out: folder to work in; the same command resumes where it was interrupted.
         start: run folder of the policy to begin with; by default one is trained first.
-        planner: of your own, MODULE:CLASS, said again: a file alone cannot make code run.
-        processes: that ask the planner; all cores by default.
-        devices: that share the practice; all by default, and of a processor every core is one.
+        planner: planner of your own, MODULE:CLASS, repeated: a file alone cannot make code run.
+        processes: number of processes that ask the planner; all cores by default.
+        devices: number of devices that share the practice; all by default; each CPU core is one.
     """
     import os
 
@@ -65,15 +65,15 @@ def distill(
 def report(run: Path, out: Path | None = None) -> Path:
     """Write a run's report as one self-contained HTML file.
 
-    Of a training: suites that the run was not judged on yet are judged first. Of a distillation:
+    For a training: suites that the run was not yet judged on are judged first. For a distillation:
     what its files hold; the report says what is missing, and which command makes it.
 
     Args:
         run: a run folder, or a distillation's folder.
-        out: where to write it; by default RUN/report.html.
+        out: file to write; by default RUN/report.html.
 
     Raises:
-        InputError: it is no such folder, or holds no policy, or no round, yet.
+        InputError: the path is not such a folder, or holds no policy, or no round, yet.
     """
     from jaxleas.distillation.report_data import is_distilled
 
@@ -89,7 +89,7 @@ def report(run: Path, out: Path | None = None) -> Path:
 
 
 class _Teller:
-    """Shows every stage, and how far it is every few seconds."""
+    """Shows every stage, and its progress every few seconds."""
 
     PAUSE = 5.0  # [s]
 

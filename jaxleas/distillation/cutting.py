@@ -15,15 +15,15 @@ from jaxleas.training.loss import Experience
 
 _KEPT = ("observation", "raw_action", "location", "deviation", "reward")
 Steps = dict[str, np.ndarray]
-"""Steps one after the other, [M, ...]: what is learned from."""
+"""Consecutive steps, [M, ...], to learn from."""
 
 
 def kept_steps(episodes: Episodes, verdicts: Sequence[Verdict]) -> Int[np.ndarray, " N"]:
     """Return how many steps of each episode are learned from.
 
-    All of them where the planner got through. Else those up to and with the step that leaves the
-    last configuration it reached, which becomes the one that fails; none where it did not even
-    reach the first, or where its time was up before it knew.
+    All of them where the planner succeeded. Otherwise, those up to and including the step that
+    leaves the last configuration it reached, which becomes the one that fails; zero where it did
+    not even reach the first, or where its time ran out first.
     """
     kept = [
         steps if verdict.success else min(verdict.last_index + 1, steps) if verdict.decided else 0
@@ -39,8 +39,8 @@ def cut(episodes: Episodes, verdicts: Sequence[Verdict]) -> Steps:
     invalid configuration costs, exactly as if a condition of the environment had failed there.
 
     Args:
-        episodes: as walked.
-        verdicts: of the exact planner on each.
+        episodes: episodes as walked.
+        verdicts: verdict of the exact planner on each episode.
     """
     kept = kept_steps(episodes, verdicts)
     failed = np.array([each.decided and not each.success for each in verdicts])
@@ -49,7 +49,7 @@ def cut(episodes: Episodes, verdicts: Sequence[Verdict]) -> Steps:
     by_planner = last & failed[:, None]
     terminated = (episodes.terminated & ~failed[:, None]) | by_planner
     truncated = last & ~terminated
-    # An invalid configuration has paid already; only a valid one still has its reward of a step.
+    # An invalid configuration has paid already; only a valid one still has its step's reward.
     cost = episodes.failure_cost * (by_planner & ~episodes.terminated)
     arrays = {name: getattr(episodes, name) for name in _KEPT}
     arrays |= {
@@ -69,8 +69,8 @@ class Stream:
     """Accepted steps waiting to be learned from, in the order they were walked.
 
     Attributes:
-        environments: rows of a batch.
-        unroll: steps a row.
+        environments: number of rows in a batch.
+        unroll: number of steps per row.
     """
 
     environments: int
@@ -103,7 +103,7 @@ class Stream:
 def to_experience(
     steps: Steps, environments: int, unroll: int
 ) -> tuple[Experience, Float[Array, "environments size"]]:
-    """Return a batch as PPO learns from it, and what was seen after its last step.
+    """Return a batch in the form that PPO learns from, and the observation after its last step.
 
     Each row is a stretch of the stream. It may run over the end of one episode into the next, as
     the rows of the ordinary training do, since an end is marked as one.

@@ -1,4 +1,4 @@
-"""The distillation loop: practise, judge; again, until the exact success stops rising.
+"""The distillation loop: practise and judge, until the exact success stops rising.
 
 The exact planner's verdict on held-out terrain is the only success that counts; a surrogate is
 never more than an accelerator (systems: labels, surrogates, planner-aware training).
@@ -33,11 +33,11 @@ _MODES = {"surrogate": AgainstSurrogate, "faithful": AgainstPlanner}
 
 
 def run_rounds(place: Workplace, say: Say) -> list[RoundResult]:
-    """Go on to the end from wherever the folder stands; return the table of all rounds.
+    """Continue to the end from wherever the folder stands; return the table of all rounds.
 
     Args:
-        place: what is worked with.
-        say: shows what is done now.
+        place: workplace of the distillation.
+        say: callable that shows what is being done.
     """
     mode: Mode = _MODES[place.config.mode](place)
     known = known_rounds(place.folder)
@@ -58,7 +58,7 @@ def run_rounds(place: Workplace, say: Say) -> list[RoundResult]:
 
 
 def _begin(place: Workplace, say: Say) -> Practised:
-    """Return the policy begun with, and what it has learned, practised without surrogate."""
+    """Return the initial policy, and what it has learned, practised without a surrogate."""
     steps = place.config.practice.steps_before
     if not steps:
         return Practised(place.policy, place.learned)
@@ -72,7 +72,7 @@ def _begin(place: Workplace, say: Say) -> Practised:
 
 
 def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> RoundResult:
-    """Return a row of the table: what the exact planner says of the round's policy."""
+    """Return a row of the table: the exact planner's verdict on the round's policy."""
     begun, planner = time.perf_counter(), place.config.planner
     cells = judge_round(
         place.folder.round(number).judged,

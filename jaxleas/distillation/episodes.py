@@ -30,15 +30,15 @@ class Episodes:
 
     Attributes:
         walks: the configurations, [N, T+1]: what a planner is asked about.
-        observation: before each step.
-        raw_action: before the tanh.
-        location: of the normal distribution that it was drawn from.
-        deviation: of that distribution.
-        reward: for each step.
-        terminated: the step met an invalid configuration (R*, C).
-        reached: the step reached a goal.
-        steps: of each episode, its last one included.
-        failure_cost: what an invalid configuration costs more than a valid one would have.
+        observation: observation before each step.
+        raw_action: action before the tanh.
+        location: location of the normal distribution that the action was drawn from.
+        deviation: standard deviation of that distribution.
+        reward: reward of each step.
+        terminated: whether the step met an invalid configuration (R*, C).
+        reached: whether the step reached a goal.
+        steps: number of steps of each episode, including its last one.
+        failure_cost: additional cost of an invalid configuration over a valid one.
         update: policy updates that the walking policy had seen.
     """
 
@@ -63,10 +63,10 @@ def make_walk(config: SteeringRun, env: SteeringEnv, networks: ActorCritic, robo
     """Return the walk: fresh starts, then one whole episode each. It is pure; jit it.
 
     Args:
-        config: of the run.
-        env: the task; its condition ends an episode, the exact planner is asked later.
+        config: configuration of the run.
+        env: steering task; its condition ends an episode, and the exact planner is asked later.
         networks: actor and critic.
-        robots: that walk at once.
+        robots: number of robots that walk at once.
 
     Returns:
         A function (world, state, key) -> arrays that `to_host` understands.
@@ -108,7 +108,7 @@ def make_walk(config: SteeringRun, env: SteeringEnv, networks: ActorCritic, robo
 
 
 def to_host(walked: Any) -> Episodes:
-    """Return what a walk made, once the device is done with it."""
+    """Return the episodes of a walk, once the device has finished it."""
     (record, (motion, valid)), map_index, cost, update = jax.device_get(walked)
     walks = Walks(motion, valid, map_index)
     steps = record.pop("walked").sum(axis=1)

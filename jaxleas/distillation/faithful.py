@@ -2,8 +2,8 @@
 
 The policy walks waves of whole episodes on the device; workers judge their guide paths while it
 walks on; failed tails are cut; PPO learns from what is left. What the device walks is at most
-`ahead` waves old, and verdicts are taken in the order of the walks, whoever answers first: so a run
-that nobody interrupts is as reproducible as its planner.
+`ahead` waves old, and verdicts are taken in the order of the walks, whatever the order of the
+answers: so an uninterrupted run is as reproducible as its planner.
 """
 
 from collections import deque
@@ -38,14 +38,14 @@ class Faithful:
     """The pieces of one faithful training.
 
     Attributes:
-        config: of the run.
-        faithful: how much is walked at once, and how far ahead.
-        env: the task.
+        config: configuration of the run.
+        faithful: configuration of the waves: how much is walked at once, and how far ahead.
+        env: steering task.
         world: terrains to train on.
-        scenes: the same, exactly.
-        judge: the exact planner, over its workers.
+        scenes: exact scenes of the same terrains.
+        judge: exact planner, with its workers.
         stream: accepted steps that wait to be learned from.
-        tally: what has been walked and judged since the last update.
+        tally: counts of what has been walked and judged since the last update.
     """
 
     config: SteeringRun
@@ -72,7 +72,7 @@ class Faithful:
         """Return the state before the first update.
 
         Args:
-            learned: to begin with, in place of fresh networks.
+            learned: networks to begin with, in place of fresh ones.
 
         Raises:
             InputError: the networks to begin with are of other sizes.
@@ -100,13 +100,13 @@ class Faithful:
     ) -> TrainState:
         """Walk, judge and learn until `ppo.updates` updates are done, or until asked to stop.
 
-        What is in flight then is given up: walked, perhaps judged, and not learned from.
+        Work in flight at that time is discarded: walked, perhaps judged, and not learned from.
 
         Args:
-            state: to go on from.
-            on_update: told state and metrics after each update.
-            asked_to_stop: asked after each wave and update.
-            on_wave: told state and steps that wait to be learned from, after each judged wave.
+            state: state to continue from.
+            on_update: called with the state and metrics after each update.
+            asked_to_stop: called after each wave and update; returns whether to stop.
+            on_wave: called with the state and the number of waiting steps after each judged wave.
 
         Returns:
             The state after the last update.
@@ -149,17 +149,17 @@ class Faithful:
         return state.replace(key=key), walked | jax.device_get(learned)  # type: ignore[attr-defined]
 
     def _ask(self, walked: Any) -> Wave:
-        """Wait for a wave to be walked, and let the workers judge it: in the bench's thread."""
+        """Wait for a wave to be walked, and let the workers judge it, in the bench's thread."""
         episodes = to_host(walked)
         paths = episodes.walks.paths(self.env.config.limits.time_step)
         return episodes, self.judge.judge(self.scenes, paths, episodes.walks.map_index)
 
 
 def staleness_bound(config: SteeringRun, faithful: FaithfulConfig) -> int:
-    """Return how many updates may lie between a step's walk and its being learned from, at most.
+    """Return the greatest number of updates between a step's walk and its being learned from.
 
-    Before a wave's last step is learned from, at most `ahead` waves that flew before it, the wave
-    itself and what waited for a full batch are: each fills a batch and so an update.
+    Before a wave's last step is learned from, at most `ahead` waves that were in flight before it,
+    the wave itself and what waited for a full batch are: each fills a batch and so an update.
     """
     wave = faithful.robots * config.env.episode_steps
     return ((faithful.ahead + 1) * wave + config.ppo.batch) // config.ppo.batch

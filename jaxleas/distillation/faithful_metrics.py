@@ -1,4 +1,4 @@
-"""What a faithful training logs beside PPO's own numbers: guides, verdicts, staleness."""
+"""What a faithful training logs besides PPO's own numbers: guides, verdicts, staleness."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Tally:
     seconds: float = 0.0
 
     def count(self, episodes: Episodes, verdicts: Sequence[Verdict]) -> None:
-        """Take a judged wave in."""
+        """Count a judged wave."""
         self.guides += len(verdicts)
         self.passed += sum(verdict.success for verdict in verdicts)
         self.undecided += sum(not verdict.decided for verdict in verdicts)
@@ -32,11 +32,11 @@ class Tally:
 
     @property
     def share(self) -> float:
-        """Share of the guide paths that the planner got through."""
+        """Return the share of the guide paths that the planner succeeded on."""
         return self.passed / max(self.guides, 1)
 
     def take(self) -> dict[str, float]:
-        """Return the numbers as metrics, and begin anew; nothing where no wave came in between."""
+        """Return the numbers as metrics, and reset; empty where no wave came in between."""
         found = {}
         if self.guides:
             found = {
@@ -52,11 +52,11 @@ class Tally:
 
 
 def batch_metrics(batch: dict[str, np.ndarray], update: int) -> dict[str, float]:
-    """Return what a batch says of the walks in it, as the ordinary training's metrics name it.
+    """Return metrics of the walks in a batch, under the names of the ordinary training.
 
     Args:
-        batch: that is about to be learned from, and one step more.
-        update: updates done before it.
+        batch: batch to be learned from, and one step more.
+        update: number of updates done before the batch.
     """
     size = len(batch["reward"]) - 1
 

@@ -24,17 +24,17 @@ from jaxleas.training.worlds import held_out_world
 
 
 def practise_faithfully(folder: RoundFolder, training: Faithful, learned: Learned) -> None:
-    """Train with the exact planner in the loop; an interrupted practice is gone on with.
+    """Train with the exact planner in the loop, and resume an interrupted practice.
 
-    The policy kept is the averaged one after the last update, not a chosen one.
+    The kept policy is the averaged one after the last update, not a chosen one.
 
     Args:
-        folder: of the round.
-        training: what is to be done in it.
-        learned: to begin with.
+        folder: folder of the round.
+        training: training to run in the folder.
+        learned: networks to begin with.
 
     Raises:
-        InterruptedRunError: a signal asked it to stop; all that was learned is saved.
+        InterruptedRunError: a signal asked the practice to stop; all that was learned is saved.
         NonFiniteError: a number became infinite or NaN.
     """
     begun, config = time.perf_counter(), training.config
@@ -76,7 +76,7 @@ def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None
 
 @dataclass
 class _Desk:
-    """Where each update is written down."""
+    """Records each update."""
 
     training: Faithful
     run: RunFolder
@@ -91,7 +91,7 @@ class _Desk:
         self.examine = jax.jit(make_examination(config, task, self.training.networks))
 
     def record(self, state: TrainState, metrics: dict[str, Any]) -> None:
-        """Log an update; now and then examine and save."""
+        """Log an update; evaluate and save at intervals."""
         config, done = self.training.config, int(state.update)
         bad = [name for name, fine in metrics.items() if "finite/" in name and not fine]
         if bad:
@@ -110,13 +110,13 @@ class _Desk:
             self.save(state)
 
     def show(self, state: TrainState, waiting: int) -> None:
-        """Show how far it is, by wave: updates come in bursts, waves at an even pace."""
+        """Show the progress by wave: updates come in bursts, waves at an even pace."""
         shown = {"planned": f"{100 * self.training.tally.share:.1f} %"}
         step = int(state.update) * self.training.config.ppo.batch + waiting
         self.progress.update(min(step, self.progress.total), shown)
 
     def save(self, state: TrainState) -> None:
-        """Keep state and policy."""
+        """Save the state and policy."""
         config = self.training.config
         policy = policy_of(self.training.networks, config.env, state.normaliser, state.averaged)
         write_policy(self.run.path / POLICY_FILE, policy)

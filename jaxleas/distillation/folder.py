@@ -40,10 +40,10 @@ def read_done(path: Path, *keys: str) -> dict[str, Any]:
 
 
 def read_begun_with(path: Path) -> str | None:
-    """Return the run folder of the policy that a distillation was begun with; None: its own.
+    """Return the run folder of the policy that a distillation began with; None: its own.
 
     Raises:
-        InputError: the file does not say.
+        InputError: the file does not contain it.
     """
     content = read_json(path)
     if not isinstance(content, dict) or not isinstance(content.get("run", 0), str | None):
@@ -60,37 +60,37 @@ class RoundFolder:
 
     @property
     def labels(self) -> Path:
-        """Folder of scenes, guide paths and verdicts."""
+        """Return the folder of scenes, guide paths and verdicts."""
         return self.path / "labels"
 
     @property
     def labelled(self) -> Path:
-        """Written when every guide path has its verdict: how long it took."""
+        """Return the file written when every guide path has its verdict: how long it took."""
         return self.labels / "done.json"
 
     @property
     def surrogate(self) -> Path:
-        """The surrogate."""
+        """Return the file of the surrogate."""
         return self.path / "surrogate.npz"
 
     @property
     def run(self) -> Path:
-        """Run folder of the practice."""
+        """Return the run folder of the practice."""
         return self.path / "run"
 
     @property
     def policy(self) -> Path:
-        """What practice ended with."""
+        """Return the file of the policy that practice ended with."""
         return self.path / "policy.npz"
 
     @property
     def practised(self) -> Path:
-        """Written when the practice is over: how long it took."""
+        """Return the file written when the practice is over: how long it took."""
         return self.path / "practised.json"
 
     @property
     def judged(self) -> Path:
-        """The exact planner's verdicts."""
+        """Return the file of the exact planner's verdicts."""
         return self.path / "judged.json"
 
 
@@ -102,34 +102,34 @@ class DistillationFolder:
 
     @property
     def config(self) -> Path:
-        """The resolved configuration."""
+        """Return the file of the resolved configuration."""
         return self.path / CONFIG
 
     @property
     def begun_with(self) -> Path:
-        """Where the policy to begin with lies."""
+        """Return the file that names the policy to begin with."""
         return self.path / "begun_with.json"
 
     @property
     def start(self) -> Path:
-        """Run folder of the policy to begin with, where none was given."""
+        """Return the run folder of the policy to begin with, where none was given."""
         return self.path / "start"
 
     @property
     def table(self) -> Path:
-        """The table of all rounds."""
+        """Return the file of the table of all rounds."""
         return self.path / "rounds.json"
 
     @property
     def policy(self) -> Path:
-        """The best round's policy."""
+        """Return the file of the best round's policy."""
         return self.path / "policy.npz"
 
     @property
     def surrogate(self) -> Path:
-        """The best round's surrogate."""
+        """Return the file of the best round's surrogate."""
         return self.path / "surrogate.npz"
 
     def round(self, number: int) -> RoundFolder:
-        """Return a round's part; round 0 is the policy begun with."""
+        """Return one round's part of the folder; round 0 is the policy begun with."""
         return RoundFolder(self.path / f"round_{number}")

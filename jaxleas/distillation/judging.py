@@ -1,4 +1,4 @@
-"""A round's verdict: the exact planner judges the policy on held-out terrain, a cell at a time."""
+"""A round's verdict: the exact planner judges the policy on held-out terrain, cell by cell."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ def judge_round(
     config: JudgeConfig,
     progress: Callable[[str], None],
 ) -> list[CellResult]:
-    """Judge a policy, or read what was judged before.
+    """Judge a policy, or read the results judged before.
 
     Args:
         file: file that keeps the results.
@@ -42,7 +42,7 @@ def judge_round(
         method: name of the policy in the results.
         examiner: exact planner that judges.
         config: suites and number of starts.
-        progress: called with what is judged now, in words.
+        progress: called with what is being judged, in words.
     """
     if file.is_file():
         return read_judged(file)

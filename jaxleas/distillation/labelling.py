@@ -23,12 +23,12 @@ from jaxleas.training.policy import Policy
 
 @dataclass(frozen=True)
 class Ground:
-    """What guide paths are walked on.
+    """Ground to walk guide paths on.
 
     Attributes:
-        env: the task.
-        world: its terrains, as the policy is trained on.
-        scenes: the same, exactly: one for each map of the world's atlas.
+        env: steering task.
+        world: terrains that the policy is trained on.
+        scenes: exact scenes of the same terrains, one for each map of the world's atlas.
     """
 
     env: SteeringEnv
@@ -69,7 +69,7 @@ def label_round(
         collection: guide paths to collect.
         oracle: exact planner to ask about them.
         workers: workers that ask it.
-        progress: called with the number of guide paths that have verdicts, and of all.
+        progress: called with the number of guide paths that have verdicts, and the total.
     """
     begun = time.perf_counter()
     files = sorted(folder.labels.glob("guides_*.npz"))
@@ -134,14 +134,14 @@ def _walk(ground: Ground, collection: Collection) -> Walks:
 def choose(
     failure: Float[np.ndarray, " N"], wanted: int, generator: np.random.Generator
 ) -> Int[np.ndarray, " wanted"]:
-    """Choose whom to ask about: half at random, half where the verdict is least sure.
+    """Choose candidates to ask about: half at random, half where the verdict is least sure.
 
     The random half keeps the labels honest where the surrogate is sure and wrong.
 
     Args:
         failure: foreseen probability of failure of each candidate.
         wanted: number to choose, at most N.
-        generator: to draw with.
+        generator: random generator to draw with.
     """
     order = generator.permutation(len(failure))
     at_random, rest = order[: wanted // 2], order[wanted // 2 :]

@@ -24,7 +24,7 @@ def open_folder(
     start: Path | None,
     allow: Collection[str] = (),
 ) -> DistillationConfig:
-    """Write the configuration, and where the policy to begin with lies; or go on in a folder.
+    """Write the configuration and the location of the initial policy, or continue in a folder.
 
     Args:
         folder: folder of the distillation.
@@ -33,9 +33,9 @@ def open_folder(
         allow: planners of the user's own that may be imported, each MODULE:CLASS.
 
     Raises:
-        InputError: the folder is something else's, or a distillation's with another configuration
-            or another policy to begin with; the planner's parameters cannot be used; or `start` is
-            no run folder.
+        InputError: the folder belongs to something else, or to a distillation with another
+            configuration or another policy to begin with; the planner's parameters cannot be used;
+            or `start` is not a run folder.
     """
     planner = find_planner(config.planner, allow)
     settings_from(planner, **config.parameters)
@@ -67,7 +67,7 @@ def first_run(config: DistillationConfig, start: Path | None) -> SteeringRun:
     """Return the configuration of the run that is begun with, or is yet to be trained.
 
     Raises:
-        InputError: `start` is no run folder.
+        InputError: `start` is not a run folder.
     """
     return config.run if start is None else load_steering_run(RunFolder.open(start).config)
 
@@ -76,12 +76,12 @@ def train_start(folder: DistillationFolder, config: DistillationConfig, devices:
     """Return the run folder of the policy to begin with, trained first where none was given.
 
     Args:
-        folder: of the distillation.
-        config: of the distillation.
-        devices: that share a training.
+        folder: folder of the distillation.
+        config: configuration of the distillation.
+        devices: devices that share a training.
 
     Raises:
-        InputError: this is no distillation's folder.
+        InputError: this is not a distillation's folder.
     """
     where = read_begun_with(folder.begun_with)
     if where is not None:
@@ -96,10 +96,10 @@ def train_start(folder: DistillationFolder, config: DistillationConfig, devices:
 
 
 def load_steering_run(path: Path) -> SteeringRun:
-    """Return the configuration of a run of steering.
+    """Return the configuration of a steering run.
 
     Raises:
-        InputError: it cannot be read, or is of another task.
+        InputError: it cannot be read, or belongs to another task.
     """
     config: Any = load_run_config(path)
     if not isinstance(config.env, SteeringConfig):

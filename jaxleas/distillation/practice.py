@@ -1,4 +1,4 @@
-"""A round's practice: the policy goes on learning while the surrogate ends its episodes."""
+"""A round's practice: the policy continues to learn while the surrogate ends its episodes."""
 
 import logging
 import time
@@ -31,13 +31,13 @@ def practice_config(
 ) -> SteeringRun:
     """Return the configuration of a round's run.
 
-    The networks are those of the policy begun with. Falling is as dear from the first step on as
-    it had become at the end of the first training: this policy is past daring.
+    The networks are those of the policy begun with. Falling costs as much from the first step on as
+    it did at the end of the first training: this policy no longer needs to explore boldly.
 
     Args:
-        config: of the distillation.
-        start: of the run begun with.
-        steps: of the environment; by default a round's.
+        config: configuration of the distillation.
+        start: configuration of the run begun with.
+        steps: number of environment steps; by default a round's.
     """
     changes = {
         "steps": steps or config.practice.steps,
@@ -61,17 +61,17 @@ def practise(
     learned: Learned,
     devices: Devices,
 ) -> None:
-    """Train in the round's run folder; an interrupted practice is gone on with.
+    """Train in the round's run folder, and resume an interrupted practice.
 
-    The policy is the average that the run ends with. (That of most successes on the way, which a
+    The policy is the average that the run ends with. (The most successful one on the way, which a
     run folder keeps, is chosen by reachability, and here it is the planner that counts.)
 
     Args:
-        folder: of the round.
-        config: of the run.
-        foresight: that ends episodes, beside reachability and collision, if any.
-        learned: to begin with.
-        devices: that share it.
+        folder: folder of the round.
+        config: configuration of the run.
+        foresight: foresight that ends episodes, in addition to reachability and collision, if any.
+        learned: networks to begin with.
+        devices: devices that share the practice.
     """
     begun = time.perf_counter()
     if (folder.run / "config.yaml").is_file():
@@ -88,9 +88,9 @@ def conclude(folder: RoundFolder, config: SteeringRun, seconds: float) -> None:
     """Keep the average that a practice's run ended with as the round's policy.
 
     Args:
-        folder: of the round.
-        config: of the run.
-        seconds: that the practice took.
+        folder: folder of the round.
+        config: configuration of the run.
+        seconds: duration of the practice [s].
     """
     _, after = read_run(folder.run)
     networks = make_networks(config.network, config.env.signature())
@@ -107,7 +107,7 @@ def read_run(path: str | Path) -> tuple[SteeringRun, Learned]:
     distillation has a surrogate of its own.
 
     Raises:
-        InputError: it is no run folder, or has no checkpoint that can be read.
+        InputError: the path is not a run folder, or has no checkpoint that can be read.
     """
     run = RunFolder.open(path)
     config = load_steering_run(run.config)

@@ -16,7 +16,7 @@ from jaxleas.reports.side_by_side import headings as side_headings
 from jaxleas.reports.side_by_side import rows as side_rows
 
 TEMPLATE = "distilled.html"
-_PARTS = ("stretch", "guide")  # of what a surrogate is worth
+_PARTS = ("stretch", "guide")  # the parts of a surrogate's report
 
 
 def write_distilled_report(run: Path, out: Path | None = None) -> Path:
@@ -24,7 +24,7 @@ def write_distilled_report(run: Path, out: Path | None = None) -> Path:
 
     Args:
         run: the distillation's folder.
-        out: where to write it; by default RUN/report.html.
+        out: file to write; by default RUN/report.html.
 
     Raises:
         InputError: no round is finished, or a file of the folder cannot be read.
@@ -115,7 +115,7 @@ def round_table(data: RunData) -> dict[str, Any]:
 
 
 def surrogate_table(data: RunData) -> list[list[str]]:
-    """Return what each round's surrogate is worth, by stretch and guide path, as text."""
+    """Return the quality of each round's surrogate, by stretch and guide path, as text."""
     table = []
     for row in data.rounds:
         report = row.surrogate or {}

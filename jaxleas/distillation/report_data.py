@@ -1,4 +1,4 @@
-"""What a distilled run's folder says of itself: read from files alone, for its report."""
+"""The content of a distilled run's folder, read from files alone, for its report."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -26,12 +26,12 @@ class LabelCount:
     """Verdicts of one round.
 
     Attributes:
-        round: its number.
-        guides: guide paths judged.
-        passed: of them, those that the planner got through.
-        undecided: of them, those without a verdict in time.
-        seconds: planning, mean a guide path.
-        reasons: the most frequent ones of failure, with their counts.
+        round: number of the round.
+        guides: number of guide paths judged.
+        passed: number of those that the planner succeeded on.
+        undecided: number of those without a verdict in time.
+        seconds: mean planning time per guide path [s].
+        reasons: most frequent reasons of failure, with their counts.
     """
 
     round: int
@@ -52,17 +52,17 @@ class Missing:
 
 @dataclass
 class RunData:
-    """All that a distilled run's report is made of.
+    """All data that a distilled run's report is made of.
 
     Attributes:
-        path: of the run.
+        path: path of the run.
         rounds: rows of rounds.json.
         labels: verdicts of each round.
-        start: rows of the first training's metrics; none where it is not at hand.
+        start: rows of the first training's metrics; empty where they are not available.
         practice: rows of each round's metrics, in order.
-        evaluations: of suites, from RUN/evaluation.
-        figures: from RUN/evaluation/figures.json.
-        missing: what was not there.
+        evaluations: evaluations of suites, from RUN/evaluation.
+        figures: figures from RUN/evaluation/figures.json.
+        missing: descriptions of what was not there.
     """
 
     path: Path
@@ -76,21 +76,21 @@ class RunData:
 
     @property
     def best(self) -> RoundResult:
-        """The round whose policy is kept."""
+        """Return the round whose policy is kept."""
         return best_of(self.rounds[1:] or self.rounds)
 
 
 def is_distilled(run: Path) -> bool:
-    """Tell whether a folder is a distillation's."""
+    """Return whether a folder is a distillation's."""
     return DistillationFolder(run).begun_with.is_file()
 
 
 def read_run_data(run: Path, planner: str) -> RunData:
-    """Read what is there; what is not is listed in `missing`.
+    """Read what is there, and list in `missing` what is not.
 
     Args:
-        run: the folder.
-        planner: its planner, for the commands that make what is missing.
+        run: folder of the run.
+        planner: planner of the run, for the commands that make what is missing.
 
     Raises:
         InputError: a file is there but cannot be read, or no round has been finished.
@@ -148,7 +148,7 @@ def count_labels(number: int, folder: Path) -> LabelCount:
     """Count a round's verdicts.
 
     Raises:
-        InputError: a file of them is none.
+        InputError: one of the files is not a verdict file.
     """
     verdicts = [verdict for _, verdict in read_verdicts(folder)]
     reasons = Counter(_kind(each.reason) for each in verdicts if each.decided and not each.success)

@@ -24,7 +24,7 @@ SMOOTH = 9  # updates over which a noisy curve is averaged
 
 
 def draw_rounds(rounds: Sequence[RoundResult]) -> bytes:
-    """Draw the exact success of every round: the mean, and each cell thin behind it."""
+    """Draw the exact success of every round: the mean, with thin lines for the cells behind it."""
     figure = _figure(6.4, 3.6)
     ax: Axes = figure.subplots()
     number = [row.round for row in rounds]
@@ -38,7 +38,7 @@ def draw_rounds(rounds: Sequence[RoundResult]) -> bytes:
 
 
 def draw_calibration(report: Mapping[str, Any]) -> bytes:
-    """Draw foreseen against found failures, by stretch and by guide path."""
+    """Draw foreseen against observed failures, by stretch and by guide path."""
     figure = _figure(8.4, 3.8)
     for ax, name in zip(figure.subplots(1, 2), ("stretch", "guide"), strict=True):
         part = report[name]
@@ -61,7 +61,7 @@ def draw_learning(
     """Draw the first training and the practice of all rounds after it, on one axis of steps.
 
     Args:
-        start: metrics of LEAS-P1; none where they are not at hand.
+        start: metrics of LEAS-P1; empty where they are not available.
         practice: metrics of each round.
     """
     figure = _figure(11.0, 3.4)

@@ -1,4 +1,4 @@
-"""What a round came to, and which of several was best."""
+"""The results of a round, and which of several rounds was best."""
 
 import math
 from collections.abc import Sequence
@@ -11,14 +11,15 @@ class RoundResult:
     """One row of the table.
 
     Attributes:
-        round: its number; 0 is the policy begun with.
+        round: number of the round; 0 is the policy begun with.
         success: mean exact success over all cells.
         cells: exact success of each cell.
-        labels: guide paths judged in this round.
-        seconds: spent on labels, fit, practice and judgement.
-        surrogate: what its fit measured; None in round 0.
-        starts: judged in all cells together; 0 where it is not known.
-        robustness: of the plans, mean over the cells [N]; None where the planner has none.
+        labels: number of guide paths judged in this round.
+        seconds: time spent on labels, fit, practice and judgement [s].
+        surrogate: measurements of the surrogate's fit; None in round 0.
+        starts: number of starts judged in all cells together; 0 where it is not known.
+        robustness: robustness of the plans, mean over the cells [N]; None where the planner does
+            not report it.
     """
 
     round: int
@@ -32,10 +33,10 @@ class RoundResult:
 
 
 def best_of(results: Sequence[RoundResult]) -> RoundResult:
-    """Return the round of most success; where it is not alone, the most robust of its like.
+    """Return the round of most success; among comparable rounds, the most robust.
 
-    Rounds whose success is less than a standard error below the greatest are its like: another draw
-    of starts might have put them first.
+    Rounds whose success is less than a standard error below the greatest are comparable to it:
+    another draw of starts might have put them first.
     """
     most = max(result.success for result in results)
     starts = min(result.starts for result in results)

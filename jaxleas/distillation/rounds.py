@@ -1,4 +1,4 @@
-"""The rounds of a distillation: what each leaves, and the table of them all."""
+"""The rounds of a distillation: the results of each, and the table of them all."""
 
 import shutil
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from jaxleas.training.train_state import Learned
 
 
 class Say(Protocol):
-    """Shows what is done now."""
+    """Shows what is being done."""
 
     def __call__(self, words: str, *, passing: bool = False) -> None:
         """Show a sentence.
@@ -29,14 +29,14 @@ class Say(Protocol):
 
 @dataclass(frozen=True)
 class Practised:
-    """What a round of practice ends with.
+    """The result of a round of practice.
 
     Attributes:
-        policy: to be judged.
-        learned: what the next round begins with.
-        labels: guide paths judged for it.
-        seconds: spent, by stage.
-        surrogate: what its fit measured; None where there is none.
+        policy: policy to be judged.
+        learned: networks that the next round begins with.
+        labels: number of guide paths judged for the round.
+        seconds: time spent, by stage [s].
+        surrogate: measurements of the surrogate's fit; None without a surrogate.
     """
 
     policy: Policy
@@ -50,7 +50,7 @@ class Mode(Protocol):
     """How a policy practises against its planner in one round."""
 
     def practise(self, number: int, before: Practised, say: Say) -> Practised:
-        """Return what the round ends with; what is in its folder is not done again."""
+        """Return the result of the round; what is already in its folder is not done again."""
         ...
 
     def products(self, folder: RoundFolder) -> list[Path]:
@@ -59,7 +59,7 @@ class Mode(Protocol):
 
 
 def known_rounds(folder: DistillationFolder) -> dict[int, RoundResult]:
-    """Return the rounds that an earlier sitting judged, with the time they took, by number."""
+    """Return the rounds that an earlier session judged, with the time they took, by number."""
     if not folder.table.is_file():
         return {}
     rows = {each.round: each for each in read_rounds(folder.table)}
@@ -67,7 +67,7 @@ def known_rounds(folder: DistillationFolder) -> dict[int, RoundResult]:
 
 
 def keep_rounds(folder: DistillationFolder, results: Sequence[RoundResult], mode: Mode) -> None:
-    """Write the table, and put what the best round of practice made at hand."""
+    """Write the table, and copy the products of the best round to the top of the folder."""
     write_rounds(folder.table, results)
     for file in mode.products(folder.round(best_of(results[1:]).round)):
         with atomic_path(folder.path / file.name) as temporary:

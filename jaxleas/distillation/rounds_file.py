@@ -1,4 +1,4 @@
-"""`rounds.json`, the table of a distillation's rounds, written, and checked when it is read."""
+"""`rounds.json`, the table of a distillation's rounds: written, and validated when read."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, fields
@@ -16,7 +16,7 @@ VERSION = 1
 
 
 class _Confusion(BaseModel):
-    """Verdicts against what was foreseen."""
+    """Verdicts against predictions."""
 
     threshold: Fraction
     failed_foreseen: Whole
@@ -26,7 +26,7 @@ class _Confusion(BaseModel):
 
 
 class _Part(BaseModel):
-    """What a surrogate is worth, by stretch or by guide path."""
+    """Quality of a surrogate, by stretch or by guide path."""
 
     count: Count
     failed: Whole
@@ -74,7 +74,7 @@ def read_rounds(path: Path) -> list[RoundResult]:
     """Return the rows of a table of rounds, round 0 first.
 
     Raises:
-        InputError: the file is none.
+        InputError: the file is not a table of rounds.
     """
     content = read_json(path)
     if not isinstance(content, dict):

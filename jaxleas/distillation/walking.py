@@ -16,16 +16,16 @@ from jaxleas.envs.steering.world import World
 from jaxleas.types import RootMotion
 
 Act = Callable[[Array, Array], tuple[Array, Any]]
-"""Returns the action on an observation with some noise, and what to keep of how it was chosen."""
+"""Returns the action for an observation with noise, and the details of the choice to keep."""
 
 
 @struct.dataclass
 class Walked:
-    """N walks of T steps, which go on after an episode has ended: `walking` tells until when.
+    """N walks of T steps, which continue after an episode has ended: `walking` gives until when.
 
     Attributes:
         motion: root motions, [N, T+1].
-        choice: what was kept of the choice of each action, [N, T].
+        choice: kept details of the choice of each action, [N, T].
         reward: reward of each step.
         terminated: whether each step met an invalid configuration.
         truncated: whether each step used up the time of its episode.
@@ -43,7 +43,7 @@ class Walked:
 
     @property
     def walking(self) -> Bool[Array, "N T"]:
-        """Whether the episode goes on before each step."""
+        """Return whether the episode is still running before each step."""
         return before_first(self.terminated | self.truncated)
 
 
@@ -62,8 +62,8 @@ def walk_from_starts(
         world: terrains and links.
         keys: random keys to draw twice as many starts, and to take valid ones; consumed here.
         weights: weights of the reward.
-        act: chooses the actions.
-        noise: shown to `act` step by step.
+        act: function that chooses the actions.
+        noise: noise that `act` receives step by step.
     """
     count = noise.shape[1]
     start, first_seen = begin(env, world, keys, count, of=2 * count)
@@ -84,5 +84,5 @@ def walk_from_starts(
 
 
 def before_first(flag: Bool[Array, "N T"]) -> Bool[Array, "N T"]:
-    """Tell which steps have no flagged one before them; the first flagged step is one of these."""
+    """Return which steps have no flagged one before them; the first flagged step is included."""
     return jnp.cumsum(flag, axis=1) - flag == 0

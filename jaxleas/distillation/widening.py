@@ -1,4 +1,4 @@
-"""Let a policy see more than it was trained with: new inputs begin with weights of zero."""
+"""Let a policy see more than it was trained with: new inputs start with weights of zero."""
 
 from dataclasses import replace
 from typing import Any
@@ -22,17 +22,17 @@ def widen(
 ) -> tuple[SteeringRun, Learned]:
     """Return a run's configuration and networks for another observation layout.
 
-    They do what they did: the layout has the old one's values first, and what it adds is not
-    listened to before it is learned from.
+    Their behaviour is unchanged: the layout has the old one's values first, and the values that it
+    adds have no effect before they are learned from.
 
     Args:
-        config: of the run.
-        learned: by it.
-        observation: the layout's name; None keeps the run's own.
+        config: configuration of the run.
+        learned: networks learned by the run.
+        observation: name of the layout; None keeps the run's own.
 
     Raises:
-        InputError: the layout does not only add to the run's, or the normaliser is a running one,
-            which knows nothing of the new values.
+        InputError: the layout does more than add to the run's, or the normaliser is a running one,
+            which has no statistics of the new values.
     """
     if observation is None or observation == config.env.observation:
         return config, learned
@@ -66,11 +66,11 @@ def widen(
 
 
 def widen_policy(policy: Policy, env: SteeringEnv) -> Policy:
-    """Return a policy as it walks in an environment whose observation only adds to its own.
+    """Return a policy that walks in an environment whose observation only adds to its own.
 
     Args:
-        policy: trained.
-        env: whose observation `widen` has accepted.
+        policy: trained policy.
+        env: environment whose observation `widen` has accepted.
     """
     added = env.layout.size - len(policy.mean)
     if not added:
@@ -88,7 +88,7 @@ def widen_policy(policy: Policy, env: SteeringEnv) -> Policy:
 
 
 def _wider(params: Any, added: int) -> Any:
-    """Return a network's parameters with `added` inputs more, of weight zero."""
+    """Return a network's parameters with `added` more inputs, of weight zero."""
     layers = dict(params["params"])
     first = dict(layers[_FIRST_LAYER])
     kernel = first["kernel"]

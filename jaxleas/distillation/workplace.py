@@ -1,4 +1,4 @@
-"""What every stage of a distillation works with: planner, policy's task, training terrain."""
+"""The shared values of a distillation's stages: planner, policy's task, training terrain."""
 
 from collections.abc import Collection
 from functools import cached_property
@@ -24,19 +24,19 @@ POLICY_FILE = "policy.npz"
 
 
 class Workplace:
-    """A distillation's planner, task and terrain, and what its policy knew before.
+    """A distillation's planner, task and terrain, and what its initial policy has learned.
 
     Attributes:
-        config: of the distillation.
-        folder: it lives in.
-        settings: of the planner that judges, resolved.
-        labelling: of the planner that labels, likewise.
-        run_config: of the policy's training, seen by the layout it practises with.
-        learned: by the policy before.
-        env: its task.
-        devices: that share the practice.
-        workers: that ask the planner.
-        judge: the planner over them.
+        config: configuration of the distillation.
+        folder: folder of the distillation.
+        settings: resolved settings of the planner that judges.
+        labelling: resolved settings of the planner that labels.
+        run_config: configuration of the policy's training, with the observation layout of practice.
+        learned: networks learned by the initial policy.
+        env: steering task of the policy.
+        devices: devices that share the practice.
+        workers: workers that ask the planner.
+        judge: planner that judges, with its workers.
     """
 
     def __init__(
@@ -48,14 +48,14 @@ class Workplace:
         devices: Devices | None = None,
         allow: Collection[str] = (),
     ):
-        """Prepare; nothing is computed yet.
+        """Prepare the workplace; nothing is computed yet.
 
         Args:
-            config: of the distillation.
-            folder: to work in.
+            config: configuration of the distillation.
+            folder: folder to work in.
             start: run folder of the policy to begin with.
-            processes: that ask the planner.
-            devices: that share the practice; by default the first.
+            processes: number of processes that ask the planner.
+            devices: devices that share the practice; by default the first.
             allow: planners of the user's own that may be imported, each MODULE:CLASS.
 
         Raises:
@@ -76,14 +76,14 @@ class Workplace:
 
     @cached_property
     def policy(self) -> Policy:
-        """The policy to begin with."""
+        """Return the policy to begin with."""
         return widen_policy(read_policy(f"{self._start}/{POLICY_FILE}"), self.env)
 
     @cached_property
     def ground(self) -> Ground:
-        """The generated training terrain, made when first needed.
+        """Return the generated training terrain, made when first needed.
 
-        Terrain files are left out: planners want surfaces, and files never judge.
+        Terrain files are left out: planners need surfaces, and files never judge.
         """
         terrain = self.run_config.terrain
         seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
@@ -93,6 +93,6 @@ class Workplace:
 
     @property
     def identity(self) -> Identity:
-        """Whose stand-in the surrogates are."""
+        """Return the identity of the planner that the surrogates stand in for."""
         parameters = self.labelling.model_dump(mode="json")
         return Identity.of(self.config.planner, parameters, self.run_config.env)

@@ -1,4 +1,4 @@
-"""A side-by-side comparison, written cell by cell, so that it goes on where it was interrupted."""
+"""A side-by-side comparison, written cell by cell, so that an interrupted one can continue."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -52,12 +52,12 @@ def compare(
         contenders: methods that walk.
         suite: suite to be walked.
         planning: exact planners that judge.
-        file: file written after every cell. What it holds already of the same policies, suite,
-            starts, seed and planner settings is kept, and not judged again.
-        say: shows progress.
+        file: file written after every cell. Results that it already holds for the same policies,
+            suite, starts, seed and planner settings are kept, and not judged again.
+        say: callable that shows progress.
 
     Returns:
-        All results, those of the file included.
+        All results, including those of the file.
     """
     workers = planner_workers(planning.processes)
     with ExitStack() as stack:
@@ -107,14 +107,14 @@ class _Sheet:
         self.earlier = (before.seconds or 0.0) if before is not None and self.results else 0.0
 
     def add(self, result: CellResult) -> None:
-        """Take a result in; the file holds it from now on."""
+        """Take in a result; from now on the file holds it."""
         self.results[result_key(result)] = result
         self._latest = None
         if self.file is not None:
             write_evaluation(self.file, self.evaluation())
 
     def evaluation(self) -> Evaluation:
-        """Return all results, in the order of the suite's cells; the same until one is added."""
+        """Return all results in the order of the suite's cells; cached until one is added."""
         if self._latest is not None:
             return self._latest
         seconds = round(self.earlier + time.perf_counter() - self.begin, 2)
@@ -127,7 +127,7 @@ class _Sheet:
 
 
 def side_by_side_file(run: Path, suite: Suite) -> Path:
-    """Return where a run folder keeps a comparison: one file a suite, number of starts and seed."""
+    """Return where a run folder keeps a comparison: one file per suite, start count and seed."""
     starts = suite.cells[0].starts
     return run / "evaluation" / f"side_by_side_{suite.name}_{starts}_seed{suite.seed}.json"
 
@@ -135,7 +135,7 @@ def side_by_side_file(run: Path, suite: Suite) -> Path:
 def _head(
     candidate: Candidate, contenders: Contenders, suite: Suite, judges: Mapping[str, Judge]
 ) -> Evaluation:
-    """Return an evaluation without results: what they will be of."""
+    """Return an evaluation without results, which describes what they will be about."""
     return Evaluation(
         suite=suite.name,
         policy=str(candidate.path),
@@ -153,9 +153,9 @@ def _head(
 def _merged(
     before: Evaluation, head: Evaluation, cells: Mapping[tuple[str, float, float, float], Cell]
 ) -> tuple[Evaluation, Results]:
-    """Return the results of a file that a new judgement would only repeat, and a head for both.
+    """Return the file's results that a new judgement would only repeat, and a head for both.
 
-    What the file knows of policies and planners that are not asked for now stays in it.
+    What the file knows of policies and planners that are not requested now stays in it.
     """
     if any(getattr(before, name) != getattr(head, name) for name in _SAME):
         return head, {}

@@ -1,4 +1,4 @@
-"""Who walks in a side-by-side comparison: the baselines, the policy judged, further policies."""
+"""The methods of a side-by-side comparison: baselines, the policy judged, further policies."""
 
 import difflib
 import hashlib
@@ -24,7 +24,7 @@ class Contenders:
     """The methods of a comparison.
 
     Attributes:
-        walkers: by the name that results carry, baselines first.
+        walkers: walkers by the name that results carry, baselines first.
         fingerprints: SHA-256 of the further policies' files, by name.
     """
 
@@ -40,9 +40,9 @@ def make_contenders(
     """Return the methods of a comparison.
 
     Args:
-        candidate: the policy judged, with its baselines.
-        policies: further ones, by the name that results will carry.
-        wanted: names of those that shall walk; all by default.
+        candidate: policy to judge, with its baselines.
+        policies: paths of further policies, by the name that results will carry.
+        wanted: names of the methods that walk; all by default.
 
     Raises:
         InputError: a name is unknown or taken, or a policy cannot be used.
@@ -72,10 +72,10 @@ def make_contenders(
 
 
 def parse_policies(given: Sequence[str]) -> dict[str, Path]:
-    """Return the policies of `name=path` texts.
+    """Return the policies given as `name=path` texts.
 
     Raises:
-        InputError: one is not of that form, or a name is given twice.
+        InputError: a text does not have that form, or a name is given twice.
     """
     policies: dict[str, Path] = {}
     for text in given:

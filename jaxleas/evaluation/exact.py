@@ -22,17 +22,17 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath
 
 Walker = Callable[[Grounds, Starts, int], Walk]
-"""Walks the starts of a cell for at most so many steps: any method, with a roadmap or without."""
+"""Walks the starts of a cell for at most the given number of steps, with or without a roadmap."""
 ResultKey = tuple[str, float, float, float, str, str | None]
 """Name, yaw, spread and speed of the cell, method, planner."""
 
 
 @dataclass(frozen=True)
 class Bookkeeping:
-    """What is known of an evaluation already, and what is done with what becomes known.
+    """What is already known of an evaluation, and what is done with new results.
 
     Attributes:
-        known: results that are there already; what they say is not asked again.
+        known: results that exist already; the questions they answer are not asked again.
         on_result: called with each new result as soon as it is there.
         on_guides: called with cell, method, planner and the number of guide paths just judged.
     """
@@ -58,11 +58,12 @@ class Planner(Protocol):
 
 @dataclass(frozen=True)
 class Judged:
-    """The roll-outs of a cell, and what an exact planner said of them.
+    """The roll-outs of a cell, and an exact planner's verdicts on them.
 
     Attributes:
-        walk: the roll-outs.
-        verdicts: one each; None where the goal was not reached: there is no guide to plan along.
+        walk: roll-outs of the cell.
+        verdicts: one verdict per roll-out; None where the goal was not reached: there is no guide
+            path to plan along.
     """
 
     walk: Walk
@@ -70,7 +71,7 @@ class Judged:
 
     @property
     def planned(self) -> Bool[np.ndarray, " N"]:
-        """The goal was reached, and the planner made contacts for the whole guide path."""
+        """Whether the goal was reached and the planner found contacts for the whole guide path."""
         return np.array([each is not None and each.success for each in self.verdicts], dtype=bool)
 
 
@@ -89,11 +90,11 @@ def ask(
     """Ask an exact planner about every guide path that reached its goal.
 
     Args:
-        cell: that was walked.
-        walked: its roll-outs.
-        planner: that judges.
-        time_step: between two configurations [s].
-        on_done: told a number of guide paths whenever so many more are judged.
+        cell: cell that was walked.
+        walked: roll-outs of the cell.
+        planner: planner that judges.
+        time_step: time between two configurations [s].
+        on_done: called with the number of guide paths judged since the call before.
     """
     numbers = np.flatnonzero(walked.reached).tolist()
     verdicts: list[Verdict | None] = [None] * len(walked.reached)
@@ -115,11 +116,11 @@ def summarise_plans(
     """Count a cell's plans: `planned` is their share of all starts, not of those that arrived.
 
     Args:
-        cell: that was walked.
-        method: its name.
-        planner: its name.
-        judged: by the planner.
-        time_step: between two configurations [s].
+        cell: cell that was walked.
+        method: name of the method.
+        planner: name of the planner.
+        judged: roll-outs and the planner's verdicts.
+        time_step: time between two configurations [s].
     """
     result = summarise(cell, method, judged.walk, time_step)
     good = [each for each in judged.verdicts if each is not None and each.success]
@@ -151,12 +152,12 @@ def judge_exact(
     """Walk a suite with every method and let every exact planner judge the same guide paths.
 
     Args:
-        env: steering task: draws the starts (the same for all), says how long a time step is.
-        walkers: walkers by the name that results carry; `walker` makes one of a steering method.
+        env: steering task: draws the starts (the same for all), and gives the time step.
+        walkers: walkers by the name that results carry; `walker` makes one from a steering method.
         suite: suite to be walked.
         planners: exact planners by name; without any, the walks alone are counted.
-        bookkeeping: what is known already, and what is done with results; by default nothing.
-        grounds: height maps of the suite's scenes, if made already.
+        bookkeeping: known results, and what is done with new ones; by default nothing.
+        grounds: height maps of the suite's scenes, if already made.
 
     Returns:
         One result for each cell, method and planner, in that order.
@@ -210,7 +211,7 @@ def exact_success(
 
 
 def result_key(result: CellResult) -> ResultKey:
-    """Return what tells a result from the others of its evaluation."""
+    """Return what distinguishes a result from the others of its evaluation."""
     cell = (result.name, result.yaw, result.yaw_spread, result.speed)
     return (*cell, result.method, result.planner)
 

@@ -27,11 +27,11 @@ class Candidate:
     """What is judged.
 
     Attributes:
-        path: it was loaded from.
+        path: path that it was loaded from.
         fingerprint: SHA-256 of its file.
         env: the task it was trained for.
         methods: the policy as a steering method first, then the baselines.
-        refusal: of their guide paths that are foreseen to fail; None: none is.
+        refusal: refusal of guide paths that are foreseen to fail; None: none is refused.
     """
 
     path: Path
@@ -45,8 +45,8 @@ def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidat
     """Load a run folder, a policy.npz or an .onnx file, with the baselines to compare with.
 
     Args:
-        path: of the policy.
-        refusal: of guide paths that are foreseen to fail.
+        path: path of the policy.
+        refusal: refusal of guide paths that are foreseen to fail.
 
     Raises:
         InputError: there is no policy, it cannot be used, or the surrogate is not for it.
@@ -76,9 +76,9 @@ def examine(
     Args:
         candidate: policy to judge.
         suite: suite to judge it on.
-        baseline: whether RB-Lin and RB-Kino are judged besides.
-        progress: called with the cell that is walked now.
-        grounds: height maps of the suite's scenes, if made already.
+        baseline: whether RB-Lin and RB-Kino are judged as well.
+        progress: called with the cell that is being walked.
+        grounds: height maps of the suite's scenes, if already made.
     """
     begin = time.perf_counter()
     methods = {
@@ -109,15 +109,15 @@ def run_evaluations(
     stage: Stage,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Evaluation]:
-    """Return a run's evaluations on all suites: those it holds, and the others made and kept now.
+    """Return a run's evaluations on all suites: those it holds, and the others, made and kept now.
 
-    One of another policy than the run's present one, or that cannot be read, is made again.
+    An evaluation of another policy than the run's present one, or an unreadable one, is made again.
 
     Args:
-        candidate: the run's.
-        run: folder.
-        stage: with suites and terrain, shared with the report's pictures.
-        progress: told which cell is walked now.
+        candidate: policy of the run.
+        run: folder of the run.
+        stage: suites and terrain, shared with the report's pictures.
+        progress: called with the cell that is being walked.
     """
     evaluations = []
     for name in REPORTED:
@@ -135,20 +135,20 @@ def run_evaluations(
 
 
 def kept_evaluation(path: Path, candidate: Candidate) -> Evaluation | None:
-    """Return the evaluation kept in that file, if it is one of this very policy."""
+    """Return the evaluation kept in that file, if it judges this very policy."""
     if not path.is_file():
         return None
     try:
         evaluation = read_evaluation(path)
-    except InputError:  # of another version, or damaged: it is ours to make again
+    except InputError:  # of another version, or damaged: it may be made again
         return None
     return evaluation if evaluation.fingerprint == candidate.fingerprint else None
 
 
 def keep_evaluation(run: Path, candidate: Candidate, evaluation: Evaluation) -> None:
-    """Keep an evaluation in its run folder, unless one of more starts is there already.
+    """Keep an evaluation in its run folder, unless the one there has more starts.
 
-    A quick look with few starts must not replace what the report is made of.
+    A quick look with few starts must not replace the evaluation that the report uses.
     """
     path = evaluation_file(run, evaluation.suite)
     kept = kept_evaluation(path, candidate)

@@ -1,4 +1,4 @@
-"""What the thesis's figures 4.17 and 5.6 to 5.9 are drawn from, as a file of plain numbers."""
+"""The data behind the thesis's figures 4.17 and 5.6 to 5.9, as a file of plain numbers."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ from jaxleas.files import read_typed, write_json
 
 
 class StepRow(Strict):
-    """Guide paths of one method in one cell, one configuration in `keep_every` planned for."""
+    """Guide paths of one method in one cell, planned for at one in `keep_every` configurations."""
 
     cell: str
     method: str
@@ -20,20 +20,20 @@ class StepRow(Strict):
     starts: Count
     reached: Fraction
     planned: Fraction
-    """Of all starts: the goal was reached and the planner made contacts for the whole path."""
+    """Share of all starts that reached the goal with contacts planned for the whole path."""
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of `planned`."""
     undecided: Fraction | None = None
-    """Of all starts: the planner ran out of time; counted as not planned."""
+    """Share of all starts for which the planner ran out of time; counted as not planned."""
     mean_step: NonNegative | None
-    """Of the root from one kept configuration to the next, over the paths that reached [m]."""
+    """Root distance from one kept configuration to the next, over the paths that reached [m]."""
     steps: NonNegative | None
-    """Mean number of them."""
+    """Mean number of those distances."""
     seconds: NonNegative | None
-    """Planning, mean over the paths that succeeded [s]."""
+    """Planning time, mean over the paths that succeeded [s]."""
     slowest: NonNegative | None
-    """The longest of them [s]."""
+    """Longest of those planning times [s]."""
 
 
 class HeightBand(Strict):
@@ -57,7 +57,7 @@ class Course(Strict):
     x: tuple[float, ...]
     """Where each step begins [m]."""
     step: tuple[float, ...]
-    """Of the root [m]."""
+    """Distance of the root in each step [m]."""
 
 
 class Figures(Strict):
@@ -67,7 +67,7 @@ class Figures(Strict):
     created: str
     planner: str
     settings: dict[str, Any]
-    """Of the planner; `keep_every` is N_ref."""
+    """Settings of the planner; `keep_every` is N_ref."""
     policies: dict[str, str]
     """SHA-256 of each policy's file, by the method's name."""
     seed: int
@@ -104,6 +104,6 @@ def read_figures(path: str | Path) -> Figures:
     """Read a figure file.
 
     Raises:
-        InputError: it is none; the key that is wrong is named.
+        InputError: it is not a figure file; the key that is wrong is named.
     """
     return read_typed(Figures, path, "figure file")

@@ -27,7 +27,7 @@ BASIC = ("stairs_up", "stairs_down", "rubble")
 COURSE = "long_course"
 SPEED = 0.04  # at the start: chapter 4's, one set of guides for all planners [m/s]
 KEEP_EVERY = (6, 8, 10, 12, 14, 16, 18, 20)
-"""N from 6 to 20, as fig. 5.6."""
+"""Values of N from 6 to 20, as in fig. 5.6."""
 BINS = 120
 
 
@@ -68,15 +68,15 @@ def measure_figures(
     file: FigureFile,
     say: Callable[[str], None] = lambda text: None,
 ) -> Figures:
-    """Fill in what a figure file lacks; it is written after each row, so that work restarts.
+    """Fill in what a figure file lacks; it is written after each row, so that work can restart.
 
     Args:
         env: steering task.
         walkers: methods, by name.
         suite: `thesis`, cut down to the cells of `figure_cells`.
         questions: what the exact planner is asked.
-        file: figure file, with what is there already.
-        say: called with what is done now.
+        file: figure file, with the rows that it has already.
+        say: called with what is being done.
     """
     cells = {cell.name: cell for cell in suite.cells}
     figures, keep_every = file.figures, questions.keep_every
@@ -137,11 +137,11 @@ def step_row(cell: Cell, method: str, keep_every: int, judged: Judged) -> StepRo
 
 
 def step_lengths(path: np.ndarray, keep_every: int) -> np.ndarray:
-    """Return the root's way from one kept configuration to the next, straight [m].
+    """Return the root's straight-line distances between consecutive kept configurations [m].
 
     Args:
         path: root positions [T, 3].
-        keep_every: one in so many is kept, the first among them.
+        keep_every: interval between kept configurations; the first configuration is kept.
     """
     kept = path[::keep_every].astype(np.float64)
     return np.linalg.norm(np.diff(kept, axis=0), axis=1)

@@ -37,25 +37,25 @@ def figures(
     """Measure what the thesis's figures 4.17 and 5.6 to 5.9 show; `jaxleas report` draws them.
 
     Guide paths over stairs, rubble and the long course are planned for at several discretisations.
-    The file grows row by row; the same command goes on where it was interrupted, and adds methods.
+    The file grows row by row; the same command resumes where it was interrupted, and adds methods.
 
     Args:
         run: a run folder, a policy.npz or an .onnx file: LEAS-P1.
-        out: the figure file, .json.
-        policies: further ones, each as name=path.
-        methods: of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further policies; by default
-            rb_kino, leas_p1 and the further ones.
-        planner: that judges.
-        keep_every: one configuration in so many is planned for, for each of these numbers.
-        starts: on stairs and rubble.
-        course_starts: on the long course, whose guide paths take longer.
-        seed: of scenes and starts.
-        held_out: on terrain to choose and tune by, not on that of evaluation.
-        processes: that plan contacts at the same time; all cores by default.
+        out: path of the figure file, .json.
+        policies: further policies, each as name=path.
+        methods: methods from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further policies; by
+            default rb_kino, leas_p1 and the further ones.
+        planner: exact planner that judges.
+        keep_every: values of N: one configuration in every N is planned for.
+        starts: number of starts on stairs and rubble.
+        course_starts: number of starts on the long course, whose guide paths take longer.
+        seed: seed of scenes and starts.
+        held_out: use terrain for choosing and tuning, not that of evaluation.
+        processes: number of processes that plan contacts at the same time; all cores by default.
 
     Raises:
-        InputError: there is no such policy or method, a number is out of range, or the file is of
-            other policies, planner settings or scenes.
+        InputError: there is no such policy or method, a number is out of range, or the file belongs
+            to other policies, planner settings or scenes.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
@@ -98,7 +98,7 @@ def figures(
 
 
 def _opened(out: Path, head: Figures) -> Figures:
-    """Return what the file holds already, with the policies of both."""
+    """Return what the file already holds, with the policies of both."""
     if not Path(out).is_file():
         return head
     before = read_figures(out)

@@ -8,17 +8,17 @@ from jaxleas.evaluation.titles import cell_title, method_title
 
 
 class Forecast:
-    """Counts guide paths as they are judged, and says so in words.
+    """Counts guide paths as they are judged, and reports progress in words.
 
-    A planner's rest is forecast from what its own cells have taken, in proportion to their starts
-    and to how long their walks may be.
+    A planner's remaining time is forecast from what its own cells have taken, in proportion to
+    their starts and to how long their walks may be.
 
     Args:
-        suite: that is judged.
-        methods: how many.
-        planners: their names; (None,) without.
-        say: shows a line.
-        clock: seconds, for tests.
+        suite: suite that is judged.
+        methods: number of methods.
+        planners: names of the planners; (None,) without any.
+        say: callable that shows a line.
+        clock: current time [s]; tests replace it.
     """
 
     def __init__(
@@ -37,12 +37,12 @@ class Forecast:
         self._done, self._guides, self._since = 0, 0, clock()
 
     def skip(self, cell: Cell, planner: str | None) -> None:
-        """Count a result that was there already."""
+        """Count a result that existed already."""
         self._done += 1
         self._left[planner] -= self._load(cell)
 
     def guides(self, cell: Cell, method: str, planner: str | None, count: int) -> None:
-        """Say that so many more guide paths of a cell are judged; 0 says that it begins."""
+        """Report that `count` more guide paths of a cell are judged; 0 reports that it begins."""
         self._guides = 0 if count == 0 else self._guides + count
         where = f"{method_title(method)} on {cell_title(cell.name)} at {cell.yaw:.0f} deg"
         whose = "walks" if planner is None else f"{planner}, {self._guides} guide paths"
@@ -50,7 +50,7 @@ class Forecast:
         self._say(f"{line}; {self.left()} left" if self._taken else line)
 
     def result(self, cell: Cell, planner: str | None) -> None:
-        """Count a result that took its time."""
+        """Count a result that took time to compute."""
         now = self._clock()
         seconds, load = self._taken.get(planner, (0.0, 0.0))
         self._taken[planner] = (seconds + now - self._since, load + self._load(cell))
@@ -58,7 +58,7 @@ class Forecast:
         self._done, self._since = self._done + 1, now
 
     def left(self) -> str:
-        """Return the time left, as minutes:seconds; of planners not met yet as of the others."""
+        """Return the time left as minutes:seconds; unseen planners are rated like the others."""
         rates = {name: seconds / load for name, (seconds, load) in self._taken.items()}
         usual = sum(rates.values()) / max(len(rates), 1)
         seconds = sum(load * rates.get(name, usual) for name, load in self._left.items())

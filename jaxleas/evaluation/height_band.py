@@ -1,4 +1,4 @@
-"""Root heights along a way, over the guide paths that reached the goal."""
+"""Root heights along a path, over the guide paths that reached the goal."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ def height_band(judged: Judged, along: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Return lowest, mean and highest root height at each x, of the paths that reached the goal.
 
     Args:
-        judged: the walks.
-        along: x [m], ascending; NaN comes back where fewer than half of the paths pass.
+        judged: walks and verdicts.
+        along: x [m], ascending; the result is NaN where fewer than half of the paths pass.
     """
     heights = []
     for index in np.flatnonzero(judged.walk.reached):

@@ -1,4 +1,4 @@
-"""Walk a suite and count: who arrives, who falls, who stops."""
+"""Walk a suite and count: which roll-outs arrive, fall or stop."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,15 +24,15 @@ class Walk:
     """The roll-outs of one method from the starts of one cell, on the host.
 
     Attributes:
-        starts: where they began and where they were sent.
-        position: of the roots [m]; constant after the end.
+        starts: starts of the roll-outs, with their goals.
+        position: positions of the roots [m]; constant after the end.
         yaw: heading [rad].
-        velocity: of the roots [m/s].
+        velocity: velocities of the roots [m/s].
         valid: whether each configuration satisfies the condition.
         end: index of each roll-out's last configuration.
-        reached: the goal, valid all the way.
-        invalid: an invalid configuration was met.
-        refused: a surrogate foresaw failure there; None where none was asked.
+        reached: whether the goal was reached, valid all the way.
+        invalid: whether an invalid configuration was met.
+        refused: whether a surrogate foresaw failure; None where none was asked.
     """
 
     starts: Starts
@@ -57,7 +57,7 @@ class Walk:
 def walk(
     env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
 ) -> Walk:
-    """Let every start of a cell walk, all at once."""
+    """Walk from every start of a cell, all at once."""
     trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints)
     result = roll_out(env, method, trips, steps, env.config.goal_radius)
     return Walk(
@@ -83,15 +83,15 @@ def judge(
     """Judge steering methods on a suite: the same starts for all of them.
 
     Args:
-        env: says what is valid, how far the goal reaches and how long a time step is.
-        methods: by the name that results carry.
-        suite: to be walked.
-        progress: told, in words, which cell is walked now.
-        grounds: that hold the suite's scenes, if made already: suites that share them, and have
-            as many starts and steps, share one compilation a method.
+        env: steering task: gives validity, the goal's radius and the time step.
+        methods: steering methods by the name that results carry.
+        suite: suite to be walked.
+        progress: called, in words, with the cell that is being walked.
+        grounds: height maps of the suite's scenes, if already made: suites that share them, and
+            have the same numbers of starts and steps, share one compilation per method.
 
     Returns:
-        One result a cell and method, cells in the suite's order.
+        One result per cell and method, cells in the suite's order.
     """
     grounds = make_grounds(suite.cells) if grounds is None else grounds
     results = []
@@ -111,10 +111,10 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
     """Count the outcomes of a cell and measure the paths of those that arrived.
 
     Args:
-        cell: that was walked.
-        method: its name.
-        walked: the roll-outs.
-        time_step: between two configurations [s].
+        cell: cell that was walked.
+        method: name of the method.
+        walked: roll-outs of the cell.
+        time_step: time between two configurations [s].
     """
     reached, invalid = walked.reached, walked.invalid
     count = len(reached)
@@ -147,11 +147,11 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
 def path_lengths(
     walked: Walk,
 ) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, " N"]]:
-    """Return how far each root went, and the straight way through its waypoints [m].
+    """Return how far each root went, and the straight-line length through its waypoints [m].
 
-    The straight way goes from the start over all waypoints but the last to where the path ends:
-    a roll-out ends within the goal's radius, not on the goal. Waypoints too are only passed within
-    that radius: over several of them a path may be a little shorter than the straight way.
+    The straight line goes from the start over all waypoints but the last to where the path ends:
+    a roll-out ends within the goal's radius, not on the goal. Other waypoints are also only passed
+    within that radius: over several of them a path may be slightly shorter than the straight line.
     """
     position = walked.position.astype(np.float64)
     steps = np.linalg.norm(np.diff(position, axis=1), axis=-1)
@@ -182,5 +182,5 @@ def _mean(values: Float[np.ndarray, " N"]) -> float | None:
 
 
 def rounded(value: float | np.floating) -> float:
-    """Return a fraction or length as results carry it."""
+    """Return a fraction or length, rounded for results."""
     return abs(round(float(value), DIGITS))

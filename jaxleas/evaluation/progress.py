@@ -1,4 +1,4 @@
-"""Says what is being judged: one redrawn line in a terminal, silence elsewhere."""
+"""Report what is being judged: one redrawn line in a terminal, silence elsewhere."""
 
 import os
 import sys
@@ -7,13 +7,13 @@ from typing import Self, TextIO
 
 
 class Reporter:
-    """Shows the latest word in place, and clears it at the end.
+    """Shows the latest message in place, and clears it at the end.
 
-    Without a terminal, or with CI or NO_COLOR set, it says nothing: the table that follows is the
-    word.
+    Without a terminal, or with CI or NO_COLOR set, it prints nothing: the table that follows is
+    enough.
 
     Args:
-        stream: where to write; standard error by default.
+        stream: stream to write to; standard error by default.
     """
 
     def __init__(self, stream: TextIO | None = None) -> None:
@@ -22,7 +22,7 @@ class Reporter:
         self._live = self._stream.isatty() and not quiet
 
     def say(self, text: str) -> None:
-        """Show `text` in place of what was said before."""
+        """Show `text` in place of the previous message."""
         if self._live:
             self._stream.write(f"\r\x1b[K{text} ...")
             self._stream.flush()

@@ -1,4 +1,4 @@
-"""What each suite is made of: which named scenarios, from which headings, at which speed."""
+"""The contents of each suite: which named scenarios, from which headings, at which speed."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -13,14 +13,14 @@ class Row:
     """One cell of a suite.
 
     Attributes:
-        name: of the cell.
-        scenario: its name in `terrain.SCENARIOS`.
+        name: name of the cell.
+        scenario: name of the scenario in `terrain.SCENARIOS`.
         yaw: heading at the start relative to the way ahead [deg].
         yaw_spread: headings are uniform in `yaw` +- this, to either side [deg].
-        speed: at the start, along the heading [m/s].
+        speed: speed at the start, along the heading [m/s].
         aim: "crossing": the way ahead is the scenario's direction, the same for all starts; "goal":
             it is each start's own direction to its goal.
-        steps: after which a roll-out is cut; by default the suite's.
+        steps: number of steps after which a roll-out is cut; by default the suite's.
     """
 
     name: str
@@ -37,12 +37,12 @@ class Recipe:
     """How to make a suite.
 
     Attributes:
-        rows: its cells.
-        starts: a cell, usually.
-        steps: after which a roll-out is cut: long enough for all who still walk.
-        expectation: of all its cells.
-        starts_per_scene: about so many starts share a scene.
-        in_report: whether every run's report has it.
+        rows: cells of the suite.
+        starts: usual number of starts per cell.
+        steps: number of steps after which a roll-out is cut: long enough for all still walking.
+        expectation: expectation of all its cells.
+        starts_per_scene: approximate number of starts that share a scene.
+        in_report: whether every run's report includes the suite.
     """
 
     rows: tuple[Row, ...]
@@ -61,7 +61,7 @@ KINDS = ("rubble", "bridge", "stairs_down", "stairs_up")
 BOTH = (0.0, 180.0)
 ROTATION = Row("rotation", "rotation", aim="goal")
 CROSSING = Row("", "", speed=0.04, aim="goal")
-"""As chapter 4 begins: facing the goal, at 0.04 m/s."""
+"""Starts as at the beginning of chapter 4: facing the goal, at 0.04 m/s."""
 
 
 def _crossing(name: str) -> Row:
@@ -75,7 +75,7 @@ THESIS = (
         for yaw, spread in ((15.0, 15.0), (90.0, 30.0), (165.0, 15.0))
         for speed in (0.0, 0.04, 0.07)
     ),
-    # T fig. 3.15 and table 4.2: at rest over the whole width; walking beside the void.
+    # T fig. 3.15 and table 4.2: at rest over the whole width; walking next to the void.
     Row("hole", "hole", aim="goal"),
     _crossing("hole_rim"),
     _crossing("bridge"),

@@ -14,13 +14,13 @@ from jaxleas.types.errors import InputError
 
 @dataclass(frozen=True)
 class Refusal:
-    """A walk ends, stopped, before its probability of success falls below the threshold.
+    """A walk is stopped before its probability of success falls below the threshold.
 
     Attributes:
-        surrogate: that foresees.
-        threshold: least probability, by the surrogate, that the planner gets so far.
+        surrogate: surrogate that foresees failure.
+        threshold: least probability, by the surrogate, that the planner gets this far.
         fingerprint: SHA-256 of the surrogate's file.
-        where: how errors call it.
+        where: name of the surrogate in errors.
     """
 
     surrogate: Surrogate
@@ -32,7 +32,7 @@ class Refusal:
         """Return an environment in which walks are refused.
 
         Raises:
-            InputError: the surrogate is of another robot or observation.
+            InputError: the surrogate is for another robot or observation.
         """
         require_fit(self.surrogate, config, where=self.where)
         return SteeringEnv(
@@ -41,7 +41,7 @@ class Refusal:
         )
 
     def describe(self) -> dict[str, Any]:
-        """Return what an evaluation file says of it."""
+        """Return what an evaluation file records of the refusal."""
         return {
             "surrogate": self.fingerprint,
             "planner": self.surrogate.identity.planner,
@@ -52,16 +52,16 @@ class Refusal:
 def load_refusal(
     surrogate: Path | None, threshold: float | None, planners: Sequence[str] = ()
 ) -> Refusal | None:
-    """Return the refusal asked for on the command line, if any.
+    """Return the refusal requested on the command line, if any.
 
     Args:
-        surrogate: its file.
+        surrogate: file of the surrogate.
         threshold: least probability of success.
-        planners: that will judge; none: the conditions alone.
+        planners: exact planners that will judge; empty: the conditions alone.
 
     Raises:
-        InputError: one of the two is missing, the file is no surrogate or stands in for none of the
-            planners, or the threshold is no probability below 1.
+        InputError: one of the two is missing, the file is not a surrogate or does not stand in for
+            any of the planners, or the threshold is not a probability below 1.
     """
     if surrogate is None and threshold is None:
         return None
@@ -83,7 +83,7 @@ def load_refusal(
 
 
 def env_of(config: SteeringConfig, refusal: Refusal | None) -> SteeringEnv:
-    """Return the environment to judge in, by R* and C, with a refusal or without."""
+    """Return the environment to judge in, with R* and C, with or without a refusal."""
     if refusal is None:
         return SteeringEnv(config.under_standard_conditions())
     return refusal.env(config)

@@ -30,28 +30,28 @@ class CellResult(Strict):
     yaw_spread: NonNegative = 0.0
     """Headings are uniform in `yaw` +- this, to either side [deg]."""
     speed: NonNegative = 0.0
-    """At the start, along the heading [m/s]."""
+    """Speed at the start, along the heading [m/s]."""
     method: str
     """"leas_p1", "rb_lin", "rb_kino", ..."""
     planner: str | None = None
-    """The exact contact planner that judged; null: the analytic conditions did."""
+    """Exact contact planner that judged; null: the analytic conditions did."""
     starts: Count
     reached: Fraction
-    """The goal (every waypoint), each configuration valid."""
+    """Share that reached the goal (every waypoint), each configuration valid."""
     invalid: Fraction
-    """An invalid configuration was met."""
+    """Share that met an invalid configuration."""
     stopped: Fraction
-    """Valid to the end of the episode, without reaching the goal."""
+    """Share valid to the end of the episode, without reaching the goal."""
     refused: Fraction | None = None
-    """Of those stopped: a surrogate foresaw failure; null where none was asked."""
+    """Share stopped because a surrogate foresaw failure; null where none was asked."""
     planned: Fraction | None = None
-    """The goal was reached and the planner made contacts for the whole guide path."""
+    """Share that reached the goal with contacts planned for the whole guide path."""
     robustness: float | None = None
-    """Mean over the postures of a contact plan, mean over the plans that succeeded [N]."""
+    """Mean robustness over the postures of a contact plan, mean over successful plans [N]."""
     mean_step: NonNegative | None = None
-    """Way of the root for each step, mean over the plans that succeeded [m]."""
+    """Root distance per step, mean over the plans that succeeded [m]."""
     undecided: Fraction | None = None
-    """The planner ran out of time; counted as not planned."""
+    """Share for which the planner ran out of time; counted as not planned."""
     low: Fraction
     high: Fraction
     """95 % interval (Wilson) of the main fraction."""
@@ -59,19 +59,19 @@ class CellResult(Strict):
     """"cross": the main fraction is `planned` where a planner judged, else `reached`; "stop": it
     is 1 - `invalid`."""
     mean_time: NonNegative | None = None
-    """To the goal, of those that reached it [s]."""
+    """Mean time to the goal, over the roll-outs that reached it [s]."""
     mean_length: NonNegative | None = None
-    """Of the paths of those that reached the goal [m]."""
+    """Mean path length, over the roll-outs that reached the goal [m]."""
     detour: NonNegative | None = None
-    """Mean path length relative to straight lines, of those that reached the goal."""
+    """Mean path length relative to straight lines, over the roll-outs that reached the goal."""
     waypoints: NonNegative | None = None
-    """Mean number of waypoints between start and goal, of those that reached it by a roadmap."""
+    """Mean number of waypoints between start and goal, over those that reached it by a roadmap."""
     areas: dict[str, AreaResult] = Field(default_factory=dict)
-    """By start area: "near" and "far" of the transition."""
+    """Outcomes by start area: "near" and "far" from the transition."""
 
     @property
     def success(self) -> float:
-        """The main fraction."""
+        """Return the main fraction."""
         if self.expectation == "stop":
             return 1.0 - self.invalid
         return self.reached if self.planned is None else self.planned
@@ -85,7 +85,7 @@ class CellResult(Strict):
         total = self.reached + self.invalid + self.stopped
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"reached + invalid + stopped is {total:g}, not 1")
-        # Fractions are written rounded: the interval may lie off by the last digit.
+        # Fractions are written rounded: the interval may be off by the last digit.
         if not self.low - 1e-6 <= self.success <= self.high + 1e-6:
             raise ValueError(
                 f"the interval [{self.low:g}, {self.high:g}] misses its fraction {self.success:g}"
@@ -99,20 +99,20 @@ class Evaluation(Strict):
     version: Literal[1] = VERSION
     suite: str
     policy: str
-    """Where it was read from."""
+    """Path that the policy was read from."""
     fingerprint: str | None = None
-    """SHA-256 of its file: whether it is still the one that was judged."""
+    """SHA-256 of the policy's file, to check that it is still the one that was judged."""
     policies: dict[str, str] = Field(default_factory=dict)
-    """Further policies: SHA-256 of the file of each, by the method's name."""
+    """SHA-256 of each further policy's file, by the method's name."""
     planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Settings of the exact planners, by name."""
     foresight: dict[str, Any] | None = None
-    """Where guides foreseen to fail were refused: `surrogate` (SHA-256 of its file), `planner`,
+    """Refusal of guide paths foreseen to fail: `surrogate` (SHA-256 of its file), `planner`,
     `threshold`."""
     robot: str
     seed: int
     created: str
-    """ISO 8601, UTC."""
+    """Time of the judging, ISO 8601, UTC."""
     seconds: NonNegative | None = None
     """Wall time of the judging [s]."""
     cells: tuple[CellResult, ...]

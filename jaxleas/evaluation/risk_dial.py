@@ -1,8 +1,8 @@
-"""The risk dial, measured: what refusing guide paths costs, and what it buys, at every threshold.
+"""The risk dial, measured: what refusing guide paths costs and gains at every threshold.
 
-A walk's probability of success only falls along its way, so refusing below a threshold while it
-walks refuses the very guide paths whose last probability lies below it. One judgement of all guide
-paths therefore tells what every threshold would have done.
+A walk's probability of success only falls along its way, so refusing below a threshold during the
+walk refuses the very guide paths whose last probability lies below it. One judgement of all guide
+paths therefore shows what every threshold would have done.
 """
 
 from collections.abc import Sequence
@@ -22,13 +22,13 @@ from jaxleas.terrain.atlas import Atlas
 
 @dataclass(frozen=True)
 class Guides:
-    """N starts, their guide paths and what was foreseen and found.
+    """N starts, their guide paths, what was foreseen and what was found.
 
     Attributes:
-        reached: the guide path reached its goal.
-        planned: and the exact planner got through.
-        survival: the surrogate's probability that it would; 0 where the goal was not reached.
-        speed: of the root along the guide path, mean [m/s].
+        reached: whether the guide path reached its goal.
+        planned: whether the exact planner succeeded as well.
+        survival: surrogate's probability that it succeeds; 0 where the goal was not reached.
+        speed: mean speed of the root along the guide path [m/s].
     """
 
     reached: Bool[np.ndarray, " N"]
@@ -42,14 +42,14 @@ class Setting:
     """What one threshold does.
 
     Attributes:
-        threshold: of the surrogate's probability.
+        threshold: threshold of the surrogate's probability.
         attempted: share of all starts whose guide path reaches its goal and is not refused.
         planned: share of all starts attempted and planned for by the exact planner.
         success: share of those attempted that were planned for; None where none was attempted.
         low: lower end of its 95 % interval (Wilson); None likewise.
-        high: upper end.
-        speed: mean of the roots attempted [m/s]; None likewise.
-        starts: in all.
+        high: upper end of that interval; None likewise.
+        speed: mean speed of the roots attempted [m/s]; None likewise.
+        starts: number of starts in all.
     """
 
     threshold: float
@@ -68,11 +68,11 @@ def foresee(
     """Return what a surrogate foresaw, and an exact planner found, of a cell's guide paths.
 
     Args:
-        env: whose local terrain the surrogate is shown.
+        env: environment whose local terrain the surrogate receives.
         atlas: terrains that were walked on.
         judged: walks and verdicts.
-        surrogate: asked.
-        time_step: between two configurations [s].
+        surrogate: surrogate that is asked.
+        time_step: time between two configurations [s].
     """
     walked, keep = judged.walk, surrogate.identity.keep_every
     rows = np.flatnonzero(walked.reached)

@@ -16,17 +16,17 @@ from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath, RootMotion
 
 CONNECTIONS = 200
-"""That a search may try between two waypoints: a budget that is the same on every machine."""
+"""Number of edges that a search may try between two waypoints: the same on every machine."""
 HOURS = 36_000.0
 
 
 def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: str) -> Walker:
-    """Return a steering method that looks for waypoints by RRT where it needs them.
+    """Return a walker that uses a steering method and finds waypoints by RRT where needed.
 
     Args:
-        env: says what is valid.
-        method: that connects waypoints.
-        steering: what kind it is: how far an edge may reach.
+        env: environment that decides what is valid.
+        method: steering method that connects waypoints.
+        steering: kind of steering method, which limits how far an edge may reach.
     """
 
     def walks(grounds: Grounds, starts: Starts, steps: int) -> Walk:
@@ -67,7 +67,7 @@ def _navigate(
 def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts) -> Walk:
     """Return guide paths as the walks of a cell; the last configuration of each is repeated.
 
-    A path that ends before its goal is a valid one as far as it goes: it has stopped.
+    A path that ends before its goal is valid as far as it goes: it counts as stopped.
     """
     end = np.array([len(path) - 1 for path in paths])
     rows = np.minimum(np.arange(end.max() + 1), end[:, None])

@@ -1,4 +1,4 @@
-"""What a report is made on: the small suites and the scenes of its pictures, on one ground."""
+"""The basis of a report: the small suites and the scenes of its pictures, on one ground."""
 
 from dataclasses import dataclass, replace
 
@@ -14,10 +14,10 @@ class Stage:
     """Suites and pictures that share their terrain, and therefore their compiled roll-outs.
 
     Attributes:
-        suites: by name, all but the large one.
+        suites: suites by name, all but the large one.
         shown: cells to be drawn, each on the first scene of its kind, by suite, name and yaw.
-        steps: of the roll-outs of each suite.
-        grounds: of all of them.
+        steps: number of steps of the roll-outs of each suite.
+        grounds: height maps of all of them.
     """
 
     suites: dict[str, Suite]
@@ -30,8 +30,8 @@ def make_stage(starts: int | None = None, seed: int = 0) -> Stage:
     """Return the stage of a report.
 
     Args:
-        starts: a cell; by default what each suite usually has.
-        seed: of scenes and starts.
+        starts: number of starts per cell; by default each suite's usual number.
+        seed: seed of scenes and starts.
     """
     suites = {name: make_suite(name, starts, seed) for name in REPORTED if name != LARGE}
     large = make_suite(LARGE, STARTS_PER_SCENE, seed)

@@ -21,9 +21,9 @@ from jaxleas.terrain.scenarios import Scenario
 from jaxleas.types import InputError, RootMotion, is_ground
 
 RESOLUTION = 0.04
-"""Of the height maps that are judged on [m]: as trained on."""
+"""Resolution of the height maps used for judging [m]: the same as in training."""
 ROUNDS = 200
-"""Draws after which a start area without a valid start is given up."""
+"""Number of draws after which a start area without a valid start is given up."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Grounds:
     """The scenes of a suite as height maps.
 
     Attributes:
-        maps: one a scene.
-        atlas: the same on the device; one shape for all cells, so that roll-outs compile once.
-        index: of each scene's map, by the scene's identity.
+        maps: one height map per scene.
+        atlas: the same maps on the device; one shape for all cells, so that roll-outs compile once.
+        index: index of each scene's map, by the scene's identity.
     """
 
     maps: list[HeightMap]
@@ -54,11 +54,11 @@ class Starts:
     """The starts of a cell.
 
     Attributes:
-        motion: of the roots.
-        map_index: of each start's scene.
-        waypoints: to be reached in order, the goal last: x, y and the root height there [m].
-        area: which of its scene's start areas each start lies in (0 near, 1 far).
-        scene: which of the cell's scenarios each start lies in.
+        motion: motions of the roots.
+        map_index: map of each start's scene.
+        waypoints: waypoints in order, the goal last: x, y and the root height there [m].
+        area: start area of its scene that each start lies in (0 near, 1 far).
+        scene: index of the cell's scenario that each start lies in.
     """
 
     motion: RootMotion
@@ -71,14 +71,14 @@ class Starts:
 def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> Starts:
     """Draw the starts of a cell: uniform in the start areas, upright at walking height.
 
-    A start that violates the condition by itself is drawn again: it would be judged before it
-    could move.
+    A start that already violates the condition is drawn again: otherwise it would be judged
+    before it could move.
 
     Args:
-        env: says what is valid, and how high the robot walks.
-        grounds: the suite's height maps.
-        cell: of the suite.
-        seed: of the suite; every cell has a random stream of its own.
+        env: environment that decides what is valid, and how high the robot walks.
+        grounds: height maps of the suite.
+        cell: cell of the suite.
+        seed: seed of the suite; every cell has a random stream of its own.
 
     Raises:
         InputError: a start area holds no valid start.
@@ -153,7 +153,7 @@ def _centre(area: Sequence[float]) -> Float[np.ndarray, " 2"]:
 def _waypoints(
     env: SteeringEnv, grounds: Grounds, cell: Cell, rng: np.random.Generator
 ) -> Float[np.ndarray, "scenes W 3"]:
-    """Return one goal a scene, drawn in its goal area, or the scene's own waypoints."""
+    """Return one goal per scene, drawn in its goal area, or the scene's own waypoints."""
     points = []
     for scenario in cell.scenarios:
         area = np.array(scenario.goal_area)
@@ -161,12 +161,12 @@ def _waypoints(
         horizontal = np.array(scenario.waypoints or drawn, dtype=np.float64)
         height_map = grounds.maps[grounds.index[id(scenario)]]
         ground = height_map.height_at(horizontal).astype(np.float64)
-        # A goal in the void has no height: ask for that of the start.
+        # A goal in the void has no height: use that of the start.
         start = height_map.height_at(_centre(scenario.start_areas[0])[None])
         ground = np.where(is_ground(ground), ground, start)
         points.append(np.column_stack([horizontal, ground + env.robot.walking_height]))
     longest = max(len(each) for each in points)
-    # Scenes with fewer waypoints repeat their last: it is reached as soon as it is asked for.
+    # Scenes with fewer waypoints repeat their last: it is reached as soon as it is targeted.
     return np.stack([np.vstack([each, *[each[-1:]] * (longest - len(each))]) for each in points])
 
 

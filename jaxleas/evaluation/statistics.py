@@ -1,4 +1,4 @@
-"""How sure a measured fraction is."""
+"""Confidence intervals of measured fractions."""
 
 import math
 
@@ -9,7 +9,7 @@ NORMAL_95 = 1.959963984540054
 
 
 def wilson_interval(successes: int, count: int, z: float = NORMAL_95) -> tuple[float, float]:
-    """Return the Wilson score interval of a fraction: honest near 0 and 1, where ours lie.
+    """Return the Wilson score interval of a fraction: accurate near 0 and 1, where ours lie.
 
     centre = (p + z^2 / 2n) / (1 + z^2 / n), half = z / (1 + z^2 / n) sqrt(p q / n + z^2 / 4n^2)
 
@@ -22,7 +22,7 @@ def wilson_interval(successes: int, count: int, z: float = NORMAL_95) -> tuple[f
         Lower and upper end, in [0, 1].
 
     Raises:
-        InputError: there is no such fraction.
+        InputError: the numbers do not give a fraction.
 
     Source: E. B. Wilson, Probable inference, the law of succession, and statistical inference,
     JASA 22 (1927).

@@ -1,4 +1,4 @@
-"""Named suites of judgement: cells of scenes, starts and headings, never met in training."""
+"""Named evaluation suites: cells of scenes, starts and headings never met in training."""
 
 import difflib
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from jaxleas.terrain.seeds import EVALUATION_SEED, TUNING_SEED
 from jaxleas.types.errors import InputError
 
 STARTS_PER_SCENE = RECIPES["transitions"].starts_per_scene
-"""A cell spreads its starts over many different scenes, about so many on each."""
+"""Approximate number of starts per scene; a cell spreads its starts over many scenes."""
 SCENES_PER_SEED = 10_000
-"""Scenes of two seeds never overlap."""
+"""Offset between the scenes of two seeds, which never overlap."""
 MAX_SEED = 10_000
 MAX_TUNING_SEED = (EVALUATION_SEED - TUNING_SEED) // SCENES_PER_SEED
 MAX_STARTS = STARTS_PER_SCENE * SCENES_PER_SEED
@@ -21,7 +21,7 @@ SUITES = tuple(RECIPES)
 SUITED_TASKS = ("steering",)
 """Tasks whose policies the suites judge."""
 REPORTED = tuple(name for name, recipe in RECIPES.items() if recipe.in_report)
-"""Suites that every report has; the others take longer or are asked for by name."""
+"""Suites that every report includes; the others take longer or are requested by name."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +29,16 @@ class Cell:
     """One number of a table: starts of one kind, and what is expected of them.
 
     Attributes:
-        name: of the kind of scene.
+        name: name of the kind of scene.
         yaw: heading at the start relative to the way ahead [deg]: 0 towards the goal, 180 with the
             back to it.
         scenarios: the scenes, with start areas (near and far, or one) and a goal area.
-        starts: spread evenly over scenes and start areas.
+        starts: number of starts, spread evenly over scenes and start areas.
         expectation: "cross": reach the goal; "stop": stay valid to the end of the episode.
         yaw_spread: headings are uniform in `yaw` +- this, to either side [deg].
-        speed: at the start, along the heading [m/s].
+        speed: speed at the start, along the heading [m/s].
         aim: "crossing": the way ahead is the scenario's; "goal": from each start to its goal.
-        steps: after which a roll-out is cut, where the suite's are not meant.
+        steps: number of steps after which a roll-out is cut, where it is not the suite's.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Cell:
 
     @property
     def key(self) -> tuple[str, float, float, float]:
-        """What tells a cell from the others of its suite: name, yaw, spread, speed."""
+        """Return what distinguishes a cell in its suite: name, yaw, spread, speed."""
         return self.name, self.yaw, self.yaw_spread, self.speed
 
 
@@ -62,11 +62,11 @@ class Suite:
     """Cells that are judged together.
 
     Attributes:
-        name: of the suite; "..._held_out" for the terrain to tune on.
-        seed: which of the scenes and starts.
-        steps: after which a roll-out is cut: long enough for all who still walk.
-        cells: of the suite.
-        start_seed: of the starts' random stream; by default `seed`.
+        name: name of the suite; "..._held_out" for the terrain to tune on.
+        seed: seed of the scenes and starts.
+        steps: number of steps after which a roll-out is cut: long enough for all still walking.
+        cells: cells of the suite.
+        start_seed: seed of the starts' random stream; by default `seed`.
     """
 
     name: str
@@ -76,25 +76,25 @@ class Suite:
     start_seed: int | None = None
 
     def stream(self) -> int:
-        """Return the seed that the starts are drawn with."""
+        """Return the seed used to draw the starts."""
         return self.seed if self.start_seed is None else self.start_seed
 
     def steps_of(self, cell: Cell) -> int:
-        """Return after how many steps a roll-out of a cell is cut."""
+        """Return the number of steps after which a roll-out of a cell is cut."""
         return self.steps if cell.steps is None else cell.steps
 
 
 def make_suite(
     name: str, starts: int | None = None, seed: int = 0, held_out: bool = False
 ) -> Suite:
-    """Return a suite: the same one, always, for the same name, starts and seed.
+    """Return a suite: always the same one for the same name, starts and seed.
 
     Args:
         name: one of SUITES.
-        starts: a cell; by default what the suite usually has.
+        starts: number of starts per cell; by default the suite's usual number.
         seed: shifts scenes and starts within the range of seeds kept for evaluation.
-        held_out: the same suite on other terrain and from other starts: to choose and tune by, so
-            that evaluation terrain stays unseen.
+        held_out: whether to use other terrain and other starts: to choose and tune by, so that
+            evaluation terrain stays unseen.
 
     Raises:
         InputError: no suite has that name, or a number is out of range.
@@ -123,13 +123,13 @@ def make_suite(
 def scene_seeds(
     starts: int, seed: int, starts_per_scene: int = STARTS_PER_SCENE, held_out: bool = False
 ) -> range:
-    """Return the terrain seeds of a cell with so many starts."""
+    """Return the terrain seeds of a cell with the given number of starts."""
     first = (TUNING_SEED if held_out else EVALUATION_SEED) + seed * SCENES_PER_SEED
     return range(first, first + -(-starts // starts_per_scene))
 
 
 def _cells(recipe: Recipe, starts: int, seeds: range) -> tuple[Cell, ...]:
-    # All headings on the same scenes: what differs between two cells is the heading alone.
+    # All headings on the same scenes: two cells differ in the heading alone.
     scenarios = {
         name: tuple(SCENARIOS[name](each) for each in seeds)
         for name in dict.fromkeys(row.scenario for row in recipe.rows)

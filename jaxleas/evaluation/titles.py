@@ -1,4 +1,4 @@
-"""What cells and methods are called for people."""
+"""Titles of cells and methods for readers."""
 
 from jaxleas.contacts.registry import PLANNERS, title_of
 from jaxleas.guide.registry import BASELINES
@@ -8,16 +8,16 @@ METHOD_TITLES = {
     "rb_kino_rrt": "RB-Kino + RRT",
     "leas_p1": "LEAS-P1",
 }
-_REFINED = "leas_p2_"  # and the name of the planner that the policy was refined against
+_REFINED = "leas_p2_"  # followed by the name of the planner that the policy was refined against
 
 
 def cell_title(name: str) -> str:
-    """Return a cell's name for people."""
+    """Return a cell's title for readers."""
     return name.replace("_", " ")
 
 
 def method_title(name: str) -> str:
-    """Return a method's name for people."""
+    """Return a method's title for readers."""
     if name in refined_names():
         return f"LEAS-P2 ({title_of(name.removeprefix(_REFINED))})"
     return METHOD_TITLES.get(name, name)

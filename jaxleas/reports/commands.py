@@ -49,38 +49,38 @@ def evaluate(
     """Judge a policy on terrains it was never trained on, and print the table.
 
     With --planners (and for the suite thesis always) methods stand side by side, judged by exact
-    contact planners; the result file grows cell by cell, and the same command goes on where it was
-    interrupted.
+    contact planners; the result file grows cell by cell, and the same command resumes
+    where it was interrupted.
 
     Args:
         run: a run folder, a policy.npz or an .onnx file.
         suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps, tables
             or thesis.
-        starts: a cell; by default 1000 for transitions, 200 or 100 for the others.
-        json: where to write the result as well; a run folder keeps the one of most starts in
-            RUN/evaluation/.
-        baseline: judge RB-Lin and RB-Kino beside it.
-        seed: of scenes and starts; training never sees any of them.
-        held_out: judge on terrain to choose and tune by, not on that of evaluation.
-        planners: exact planners that judge, or none; for the suite thesis all that are built in.
-        methods: that stand side by side, of rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further
-            policies; by default all.
-        policies: further ones, each as name=path.
-        time_limit: for one guide path, of mip and sl1m [s]; what is not decided by then counts as
-            not planned.
-        max_combinations: of SL1M for what its relaxation leaves undecided; 0: SL1M without
-            heuristics.
-        slack_weights: of SL1M's slacks: uniform or guide.
-        processes: that plan contacts at the same time; all cores by default.
+        starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
+        json: file to write the result to as well; a run folder keeps the result with the most
+            starts in RUN/evaluation/.
+        baseline: judge RB-Lin and RB-Kino as well.
+        seed: seed of scenes and starts; training never sees any of them.
+        held_out: judge on terrain for choosing and tuning, not on that of evaluation.
+        planners: exact planners that judge, or none; for the suite thesis all built-in ones.
+        methods: methods that stand side by side, from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the
+            further policies; by default all.
+        policies: further policies, each as name=path.
+        time_limit: time limit for one guide path, of mip and sl1m [s]; a path not decided by then
+            counts as not planned.
+        max_combinations: most combinations that SL1M tries for what its relaxation leaves
+            undecided; 0: SL1M without heuristics.
+        slack_weights: weights of SL1M's slacks: uniform or guide.
+        processes: number of processes that plan contacts at the same time; all cores by default.
         pictures: folder for pictures of the guide paths.
         surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
             they end early, as stopped. The result is kept in --json only.
-        threshold: least probability of success, by the surrogate, to go on with: the risk dial.
+        threshold: least probability of success, by the surrogate, to continue with: the risk dial.
 
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
     """
-    plan = make_suite(suite, starts, seed, held_out)  # mistakes are told before anything is loaded
+    plan = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
     further = parse_policies(_words(policies) or ())
@@ -138,7 +138,7 @@ def evaluate(
 
 
 def _require_evaluation(file: Path) -> None:
-    """Refuse to write over what is no evaluation: a scene named by mistake, say."""
+    """Refuse to overwrite a file that is not an evaluation: a scene named by mistake, say."""
     try:
         read_evaluation(file)
     except InputError as error:
@@ -159,7 +159,7 @@ def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def _settings(planner: str, given: dict[str, Any]) -> PlannerSettings:
-    """Return a planner's settings with what is given, as far as the planner has such settings."""
+    """Return a planner's settings with the given ones, as far as the planner has such settings."""
     found = find_planner(planner, [planner])
     known = found.settings.model_fields
     return settings_from(found, **{name: each for name, each in given.items() if name in known})
@@ -175,14 +175,14 @@ def _words(given: Sequence[str] | None) -> list[str] | None:
 def report(run: Path, out: Path | None = None) -> Path:
     """Write a run's report as one self-contained HTML file.
 
-    Suites that the run was not judged on yet are judged first.
+    Suites that the run was not yet judged on are judged first.
 
     Args:
         run: a run folder.
-        out: where to write it; by default RUN/report.html.
+        out: file to write; by default RUN/report.html.
 
     Raises:
-        InputError: it is no run folder, or holds no policy yet.
+        InputError: the path is not a run folder, or holds no policy yet.
     """
     from jaxleas.reports.report import write_report
 

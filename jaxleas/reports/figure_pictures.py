@@ -29,7 +29,7 @@ OTHER = "#8a3fb5"
 
 
 def draw_figures(figures: Figures) -> list[Picture]:
-    """Draw what the file holds numbers for; the captions say of how many guide paths."""
+    """Draw what the file holds numbers for; the captions state the number of guide paths."""
     pictures = []
     if figures.heights:
         pictures.append(_picture("4.17", _heights(figures), _heights_words(figures)))

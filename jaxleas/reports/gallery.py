@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS = 80
-"""Starts drawn in a picture, as in T fig. 3.14."""
+"""Number of starts drawn in a picture, as in T fig. 3.14."""
 DPI = 120
 
 
@@ -41,9 +41,9 @@ class Picture:
     """A picture of the report.
 
     Attributes:
-        name: of its file, without suffix.
-        caption: a sentence or two.
-        png: the picture.
+        name: name of the picture's file, without suffix.
+        caption: caption of one or two sentences.
+        png: bytes of the picture, as PNG.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class _Shown:
-    """One cell as walked by every method."""
+    """One cell, as walked by every method."""
 
     cell: Cell
     walks: dict[str, Walk]
@@ -65,9 +65,9 @@ def draw_gallery(
     """Walk one scene of every kind and draw it.
 
     Args:
-        env: the task.
-        methods: the first is the one that the report is about; a second is drawn beside it.
-        stage: with the cells to be drawn.
+        env: steering task.
+        methods: steering methods; the first is the report's, and a second is drawn next to it.
+        stage: stage with the cells to be drawn.
     """
     grounds = stage.grounds
     first = next(iter(methods))
@@ -203,7 +203,7 @@ def _figure(width: float, height: float) -> "Figure":
 
 
 def legend(figure: "Figure", planner: str | None = None) -> None:
-    """Explain the colours of top views; with a planner's name, those of its answers too."""
+    """Explain the colours of top views, and with a planner's name those of its answers."""
     from matplotlib.lines import Line2D
 
     def dot(colour: str, edge: str, label: str) -> Line2D:
@@ -225,6 +225,6 @@ def legend(figure: "Figure", planner: str | None = None) -> None:
 
 def _picture(name: str, caption: str, figure: "Figure") -> Picture:
     stream = BytesIO()
-    # Without the software's version in it, the same pixels are the same bytes.
+    # Without the software's version in it, equal pixels give equal bytes.
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     return Picture(name, caption, stream.getvalue())

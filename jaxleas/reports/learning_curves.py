@@ -6,7 +6,7 @@ from typing import Any
 
 DPI = 120
 COLOURS = ("#1f5fd0", "#c33d2e", "#2e8b57", "#8a5fb0", "#b8860b")
-# Panel title -> (unit, {metric: label}); the first names are what the report is read for.
+# Panel title -> (unit, {metric: label}); the first names are the most important for the reader.
 PANELS: dict[str, tuple[str, dict[str, str]]] = {
     "Held-out links": (
         "% of starts",
@@ -47,7 +47,7 @@ def draw_learning_curves(rows: Sequence[Mapping[str, Any]]) -> bytes:
     """Draw the learning curves of a run and return them as a PNG.
 
     Args:
-        rows: of `metrics.jsonl`.
+        rows: rows of `metrics.jsonl`.
     """
     from matplotlib.figure import Figure  # not pyplot: no global state, no window
 

@@ -10,11 +10,11 @@ STYLE = "report.css"
 
 
 def page_template(room: str, name: str) -> "Template":
-    """Return a report's template; it is filled strictly, and `style` is the reports' own.
+    """Return a report's template; it is filled strictly, and `style` is shared by all reports.
 
     Args:
-        room: package that the template lies in.
-        name: of its file.
+        room: package that contains the template.
+        name: name of the template's file.
     """
     from jinja2 import Environment, StrictUndefined
     from markupsafe import Markup

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 REACHED, UNPLANNED, INVALID, STOPPED = "#ffd21f", "#e0359b", "#000000", "#ffffff"
 PATH, GOAL, RING = "#1f5fd0", "#e02020", "#1f5fd0"
 ARROW_SPACING, ARROW_TURN = 0.3, 1.0
-"""Between two heading arrows along a path [m], and in turning [rad]."""
+"""Distance between two heading arrows along a path [m], and turn between them [rad]."""
 ARROW_LENGTH = 0.15
-"""Of a heading arrow [inches], whatever the picture's scale."""
+"""Length of a heading arrow [inches], whatever the picture's scale."""
 MOST_ARROWS = 25
-"""Along one path: a robot that dithers must not be drowned in them."""
+"""Most arrows along one path: they must not hide a robot that dithers."""
 BORDER = 0.12
-"""Void shown around the ground [m]."""
+"""Width of the void shown around the ground [m]."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,13 @@ class View:
     """What a top view shows.
 
     Attributes:
-        title: above it.
-        ground: the terrain.
-        walk: many roll-outs on that terrain, to one goal.
-        examples: which of them are drawn as paths.
-        dots: how many of them are drawn as starts.
-        radius: within which the goal is reached [m].
-        planned: of the roll-outs, those that an exact planner found contacts for; None: not asked.
+        title: title above the view.
+        ground: height map of the terrain.
+        walk: roll-outs on that terrain, to one goal.
+        examples: roll-outs that are drawn as paths.
+        dots: number of roll-outs that are drawn as starts.
+        radius: radius within which the goal counts as reached [m].
+        planned: roll-outs that an exact planner found contacts for; None: not asked.
     """
 
     title: str
@@ -56,9 +56,9 @@ def choose_examples(walk: Walk, count: int, among: int) -> list[int]:
     """Return roll-outs that show a cell: starts spread out, one of each kind of failure first.
 
     Args:
-        walk: of one scene.
-        count: how many, at most.
-        among: the first so many.
+        walk: roll-outs of one scene.
+        count: greatest number of roll-outs to return.
+        among: number of first roll-outs to choose from.
     """
     horizontal = walk.position[:among, 0, :2]
     stopped = (~walk.reached & ~walk.invalid)[:among]
@@ -101,7 +101,7 @@ def draw_view(ax: "Axes", view: View) -> None:
 
 
 def _crop(ax: "Axes", ground: HeightMap, waypoints: Float[np.ndarray, "W 3"]) -> None:
-    """Leave out the void around the ground, but no goal that lies in it."""
+    """Leave out the void around the ground, but keep any goal that lies in it."""
     rows, columns = np.nonzero(np.isfinite(ground.heights))
     x = np.concatenate([ground.origin[0] + ground.resolution * columns, waypoints[:, 0]])
     y = np.concatenate([ground.origin[1] + ground.resolution * rows, waypoints[:, 1]])
@@ -168,18 +168,18 @@ def _draw_goals(ax: "Axes", waypoints: Float[np.ndarray, "W 3"], radius: float) 
 def draw_profile(
     ax: "Axes", robot: Robot, ground: HeightMap, walk: Walk, index: int, title: str
 ) -> None:
-    """Draw the height profile of one path: the ground below it, the root, and what legs reach.
+    """Draw the height profile of one path: the ground below it, the root, and the legs' reach.
 
-    The band is the legs' range of motion straight below the root; R* asks that ground lies in
-    it somewhere within 0.1 m, C that the ground stays below the trunk's underside.
+    The band is the legs' range of motion straight below the root; R* requires ground in it
+    somewhere within 0.1 m, C that the ground stays below the trunk's underside.
 
     Args:
-        ax: to draw on.
-        robot: whose legs and trunk.
-        ground: terrain.
-        walk: many roll-outs on it.
-        index: of the one drawn.
-        title: above the picture.
+        ax: axes to draw on.
+        robot: robot whose legs and trunk are drawn.
+        ground: height map of the terrain.
+        walk: roll-outs on the terrain.
+        index: index of the roll-out to draw.
+        title: title above the picture.
     """
     path = walk.path(index)
     moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)

@@ -1,4 +1,4 @@
-"""What the thesis prints, from one data file: `thesis.json`, beside this module."""
+"""The thesis's printed numbers, from one data file next to this module: `thesis.json`."""
 
 import json
 from functools import cache
@@ -10,7 +10,7 @@ from jaxleas.evaluation.result_file import CellResult
 
 
 class PublishedRow(Strict):
-    """One cell of a table; None: not printed, or the method cannot begin so."""
+    """One cell of a table; None: not printed, or the method cannot start in this way."""
 
     cell: str
     yaw: float
@@ -31,17 +31,17 @@ class PublishedTable(Strict):
 
 
 class Published(Strict):
-    """Tables, and what is read off figures in words: no number of a curve is guessed."""
+    """Tables, and values read off figures in words: no number of a curve is guessed."""
 
     version: Literal[1]
     source: str
     tables: tuple[PublishedTable, ...]
     figures: dict[str, str]
     learning: dict[str, str]
-    """Which figure shows learning with a planner, by the planner's name."""
+    """Figure that shows learning with a planner, by the planner's name."""
 
     def learning_of(self, planner: str) -> str:
-        """Return what is read off the figure of learning with a planner; empty without one."""
+        """Return the words read off the figure of learning with a planner; empty without one."""
         return self.figures.get(self.learning.get(planner, ""), "")
 
 

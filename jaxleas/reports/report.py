@@ -29,13 +29,13 @@ from jaxleas.types import InputError
 
 TEMPLATE = "report.html"
 MOST_LISTED = 12
-"""Entries of a list in the provenance; a command line is shorter."""
+"""Greatest number of list entries shown in the provenance; a command line is shorter."""
 KINDS = ("rubble", "bridge", "stairs_down", "stairs_up")
 
 
 @dataclass(frozen=True)
 class SuccessRow:
-    """A row of the success table: one heading and method over the four transitions."""
+    """One row of the success table: one heading and method over the four transitions."""
 
     heading: str
     method: str
@@ -51,23 +51,23 @@ def write_report(
     out: str | Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Path:
-    """Write the report of a run, and its pictures beside it in RUN/pictures.
+    """Write the report of a run, with its pictures in RUN/pictures.
 
     The same run folder and evaluations give the same bytes.
 
     Args:
-        run: the run folder: config.yaml, provenance.json, metrics.jsonl.
-        candidate: the run's policy, which walks for the pictures.
-        evaluations: of the policy, one a suite.
-        stage: with the scenes to be drawn.
-        out: where to write it; by default RUN/report.html.
-        progress: told what is being made.
+        run: run folder with config.yaml, provenance.json and metrics.jsonl.
+        candidate: policy of the run, which walks for the pictures.
+        evaluations: evaluations of the policy, one per suite.
+        stage: stage with the scenes to be drawn.
+        out: file to write; by default RUN/report.html.
+        progress: called with what is being made.
 
     Returns:
-        Where it was written.
+        Path of the written report.
 
     Raises:
-        InputError: a file of the run cannot be read, or the report not written.
+        InputError: a file of the run cannot be read, or the report cannot be written.
     """
     run = Path(run)
     out = run / "report.html" if out is None else Path(out)
@@ -90,10 +90,10 @@ def render_report(
     """Return the report's HTML: images inline, nothing fetched, no scripts.
 
     Args:
-        run: the run folder, for configuration and provenance.
-        metrics: rows of metrics.jsonl; none for a policy without a history.
-        evaluations: one a suite.
-        pictures: in the order they appear.
+        run: run folder, for configuration and provenance.
+        metrics: rows of metrics.jsonl; empty for a policy without a history.
+        evaluations: evaluations of the policy, one per suite.
+        pictures: pictures in the order in which they appear.
     """
     by_suite = {evaluation.suite: evaluation for evaluation in evaluations}
     return page_template("jaxleas.reports", TEMPLATE).render(
@@ -149,7 +149,7 @@ def headlines(
 
 
 def success_rows(evaluation: Evaluation | None) -> list[SuccessRow]:
-    """Return the success table in the shape of T table 3.3, the thesis's own numbers beside."""
+    """Return the success table in the shape of T table 3.3, next to the thesis's own numbers."""
     if evaluation is None:
         return []
     table = []
@@ -198,7 +198,7 @@ def _provenance(path: Path) -> list[tuple[str, str]]:
 
 
 def _plain(value: Any) -> str:
-    """Return a JSON value as a person writes it."""
+    """Return a JSON value as a person would write it."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_plain(each)}" for key, each in value.items())
     if isinstance(value, list):

@@ -12,7 +12,7 @@ def draw_dial(curves: Mapping[str, Sequence[Mapping[str, Any]]], title: str) -> 
 
     Args:
         curves: settings as `as_json` gives them, by the name of what was walked.
-        title: above the picture.
+        title: title above the picture.
     """
     from matplotlib.figure import Figure  # not pyplot: no global state, no window
 

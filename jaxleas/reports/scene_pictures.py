@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STARTS = 40
-"""Of each picture, all on the cell's first scene."""
+"""Number of starts in each picture, all on the cell's first scene."""
 EXAMPLES = 6
-"""Guide paths drawn."""
+"""Number of guide paths drawn."""
 HEIGHT_CELL, BINS = "stairs_up", 120
 COLOURS = ("#1f5fd0", "#2e9e4f", "#d07c1f", "#8a3fb5", "#7a7a7a")
 DPI = 100
@@ -40,18 +40,18 @@ def draw_side_by_side(
     folder: Path,
     say: Callable[[str], None] = lambda text: None,
 ) -> list[Path]:
-    """Draw every cell of a suite, one method beside the other, and the root over stairs.
+    """Draw every cell of a suite, one method next to the other, and the root over stairs.
 
     Args:
-        env: the task.
-        walkers: the methods, by name.
-        suite: whose cells are drawn.
-        planners: the first of them colours the starts.
-        folder: of the pictures.
-        say: told what is being drawn.
+        env: steering task.
+        walkers: walkers by method name.
+        suite: suite whose cells are drawn.
+        planners: names of the exact planners; the first colours the starts.
+        folder: folder of the pictures.
+        say: called with what is being drawn.
 
     Returns:
-        The pictures' files.
+        Paths of the pictures.
     """
     shown = [replace(cell, scenarios=cell.scenarios[:1], starts=STARTS) for cell in suite.cells]
     grounds = make_grounds(shown)
@@ -141,7 +141,7 @@ def _figure(width: float, height: float) -> "Figure":
 
 def _write(figure: "Figure", path: Path) -> Path:
     stream = BytesIO()
-    # Without the software's version in it, the same pixels are the same bytes.
+    # Without the software's version in it, equal pixels give equal bytes.
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     write_bytes(path, stream.getvalue())
     return path

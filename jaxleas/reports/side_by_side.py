@@ -1,4 +1,4 @@
-"""Methods side by side: one row a cell and method, the exact planners in columns."""
+"""Methods side by side: one row per cell and method, the exact planners in columns."""
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
@@ -11,12 +11,12 @@ from jaxleas.reports.table import align, percent
 
 
 def has_plans(evaluation: Evaluation) -> bool:
-    """Tell whether an exact planner judged anything."""
+    """Return whether an exact planner judged anything."""
     return any(cell.planner is not None for cell in evaluation.cells)
 
 
 def planners_of(evaluation: Evaluation) -> list[str]:
-    """Return the names of the planners that judged, in the order they are met."""
+    """Return the names of the planners that judged, in order of appearance."""
     return list(dict.fromkeys(cell.planner for cell in evaluation.cells if cell.planner))
 
 

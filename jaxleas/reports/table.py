@@ -1,4 +1,4 @@
-"""Results as a table to read, beside the thesis's."""
+"""Results as a table to read, next to the thesis's."""
 
 from collections.abc import Sequence
 
@@ -41,7 +41,7 @@ def navigation(cell: str, yaw: float) -> float | None:
 
 
 def rows(evaluation: Evaluation) -> list[tuple[str, ...]]:
-    """Return the cells of the table as text, one row a cell and method."""
+    """Return the cells of the table as text, one row per cell and method."""
     return [_row(evaluation.suite, cell) for cell in evaluation.cells]
 
 
@@ -73,7 +73,7 @@ def _good(cell: CellResult, area: AreaResult | None) -> float | None:
 
 
 def filled_columns(body: Sequence[Sequence[str]]) -> list[int]:
-    """Return which columns say something: the others would only push them off the line."""
+    """Return the columns with content: the others would only push them off the line."""
     return [column for column in range(len(HEADINGS)) if any(row[column] != "-" for row in body)]
 
 
@@ -90,10 +90,10 @@ def plain_table(evaluation: Evaluation) -> str:
 
 
 def align(lines: Sequence[Sequence[str]], left: Sequence[str]) -> list[str]:
-    """Return lines of equal columns, the first of them headings, ruled off.
+    """Return lines of equal columns, with a rule below the first line, the headings.
 
     Args:
-        lines: the headings, then the rows.
+        lines: headings, then rows.
         left: headings of the columns that are aligned to the left.
     """
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]

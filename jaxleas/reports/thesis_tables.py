@@ -1,4 +1,4 @@
-"""Tables 4.1, 4.2 and 4.3 of the thesis, each number of ours beside the printed one."""
+"""Tables 4.1, 4.2 and 4.3 of the thesis, each of our numbers next to the printed one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from jaxleas.reports.table import percent
 
 @dataclass(frozen=True)
 class Entry:
-    """One number beside the printed one.
+    """One number next to the printed one.
 
     Attributes:
-        ours: as text; "-" where it was not measured.
-        under: its interval, how many starts or guide paths, and which seed.
-        printed: the thesis's, as text; "-" where it prints none.
+        ours: our number, as text; "-" where it was not measured.
+        under: interval of our number, number of starts or guide paths, and seed.
+        printed: number of the thesis, as text; "-" where it prints none.
     """
 
     ours: str
@@ -34,7 +34,7 @@ class ThesisTable:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing of it was measured."""
+        """Whether nothing in the table was measured."""
         return all(entry.ours == "-" for _, entries in self.rows for entry in entries)
 
 
@@ -42,7 +42,7 @@ def thesis_tables(evaluations: Sequence[Evaluation]) -> list[ThesisTable]:
     """Return tables 4.1 to 4.3, filled from evaluations of the suite `thesis`.
 
     Args:
-        evaluations: searched in this order; the first that holds a number gives it.
+        evaluations: evaluations to search, in this order; the first that holds a number gives it.
     """
     found = [each for each in evaluations if each.suite in ("thesis", "thesis_held_out")]
     return [_table(table, found) for table in thesis().tables if table.planner is not None]
@@ -89,7 +89,7 @@ def _text(quantity: str, value: float | None) -> str:
 
 
 def _under(quantity: str, cell: CellResult, seed: int) -> str:
-    """Return what stands under a number: robustness is that of the plans that succeeded."""
+    """Return the text below a number: robustness is that of the plans that succeeded."""
     if quantity == "robustness":
         return f"{round((cell.planned or 0.0) * cell.starts)} plans, seed {seed}"
     return f"{100 * cell.low:.0f} to {100 * cell.high:.0f}; {cell.starts} starts, seed {seed}"
