@@ -82,9 +82,10 @@ def _open(
     if given.resume:
         found = RunFolder.open(given.resume, needs_checkpoint=False)
         config = load_run_config(found.config, allow=given.allow)
+        devices = _devices(given, config)  # before anything touches JAX's devices
         make_task(config, given.allow)  # before the folder is held: its code may not be allowed
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
-        return config, _devices(given, config), run
+        return config, devices, run
     config = pinned(load_run_config(given.config, overrides, given.allow))
     require_watchers(config.watch)  # before a folder is made
     devices = _devices(given, config)
