@@ -24,6 +24,7 @@ def test_sizes(face):
     assert face.action_size == 4
 
 
+@pytest.mark.slow
 def test_a_wrapped_batch_restarts_with_new_starts_and_tells_cuts_from_failures(face):
     from jaxleas.envs.steering.brax_face import wrap_for_training
 

@@ -135,6 +135,7 @@ def test_a_resumed_run_on_files_equals_one_left_in_peace(folder):
 
 
 @pytest.mark.usefixtures("brax_ranks")
+@pytest.mark.slow
 def test_a_policy_learns_on_a_file_alone(folder):
     robots, updates = 256, 40
     ppo = {

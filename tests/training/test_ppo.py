@@ -99,6 +99,7 @@ def test_it_learns_to_walk_to_goals_on_flat_ground():
     assert np.mean(reward[-3:]) > np.mean(reward[:3]) + 0.25
 
 
+@pytest.mark.slow
 def test_running_statistics_learn_the_observation():
     config = SteeringRun.model_validate(
         {"network": {"hidden": [8], "normaliser": "running"}, "ppo": SMALL | {"steps": 640 * 3}}
