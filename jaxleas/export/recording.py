@@ -9,11 +9,12 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.configuration.values import value_of
 from jaxleas.envs.environment import Task
 from jaxleas.envs.host_starts import HostPool
 from jaxleas.envs.starts import pool_of, take
 from jaxleas.training.policy import Policy
+from jaxleas.training.ppo_params import task_numbers
+from jaxleas.training.walkers.host import generator_of
 
 LEAST_OBSERVATIONS = 10_000
 Record = Callable[[Policy, Any, Array], tuple[Any, Any]]
@@ -55,7 +56,7 @@ def record_observations(
 
 def _on_device(task: Task, robots: int, steps: int) -> Record:
     """Return a function that records a round of a task that steps on the device, compiled once."""
-    weights = task.weights(_numbers(task), 0.0)
+    weights = task.weights(task_numbers(task.config), 0.0)
 
     def record(policy: Policy, world: Any, key: Array) -> tuple[Array, Array]:
         disturbance_key, pool_key, take_key = jax.random.split(key, 3)
@@ -79,11 +80,11 @@ def _on_device(task: Task, robots: int, steps: int) -> Record:
 
 def _on_host(task: Task, robots: int, steps: int) -> Record:
     """Return a function that records a round of a task that steps on the host."""
-    weights = task.weights(jax.tree.map(float, _numbers(task)), 0.0)
+    weights = task.weights(jax.tree.map(float, task_numbers(task.config)), 0.0)
     act = jax.jit(lambda policy, seen: policy.signature.mode(policy.answer_vector(seen)))
 
     def record(policy: Policy, world: Any, key: Array) -> tuple[np.ndarray, np.ndarray]:
-        generator = np.random.default_rng(np.asarray(jax.random.key_data(key)).ravel().tolist())
+        generator = generator_of(key)
         pool = HostPool.of(task.draw_starts(world, generator, 4 * robots, examined=True))
         episode, _ = pool.take(pool.draw_picks(generator, (robots,)))
         walking, rows = np.ones(robots, dtype=bool), []
@@ -101,10 +102,6 @@ def _on_host(task: Task, robots: int, steps: int) -> Record:
         return np.stack([seen for seen, _ in rows]), np.stack([walks for _, walks in rows])
 
     return record
-
-
-def _numbers(task: Task) -> dict[str, Any]:
-    return {name: jnp.float32(value_of(task.config, name)) for name in task.config.swept}
 
 
 def edge_cases(policy: Policy) -> Float[np.ndarray, "cases seen"]:

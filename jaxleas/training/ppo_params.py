@@ -5,6 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from flax import struct
+from jax import Array
 
 from jaxleas.configuration.values import value_of
 from jaxleas.envs.environment import TaskConfig
@@ -23,6 +24,11 @@ def swept_fields(task: TaskConfig) -> tuple[str, ...]:
         *(f"ppo.{name}" for name in SWEPT_PPO_FIELDS),
         *(f"env.{name}" for name in task.swept),
     )
+
+
+def task_numbers(task: TaskConfig) -> dict[str, Array]:
+    """Return the values of a task's `swept` fields by their dotted names, float32."""
+    return {name: jnp.float32(value_of(task, name)) for name in task.swept}
 
 
 @struct.dataclass
@@ -58,7 +64,7 @@ class PpoParams:
         """Return a configuration's numbers: constants of the program that uses them."""
         return cls(
             **{name: getattr(config.ppo, name) for name in SWEPT_PPO_FIELDS},
-            task={name: jnp.float32(value_of(config.env, name)) for name in config.env.swept},
+            task=task_numbers(config.env),
         )
 
     @classmethod
