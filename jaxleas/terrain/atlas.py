@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Bool, Float, Int, UInt32
+from jaxtyping import Float, Int, UInt32
 
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import NO_GROUND, InputError, is_ground
@@ -37,11 +37,6 @@ class Atlas:
     def __len__(self) -> int:
         """Return the number of maps."""
         return self.heights.shape[0]
-
-    @property
-    def always(self) -> Bool[Array, ""]:
-        """A true value, which the compiler does not know (`compute_once`)."""
-        return self.origin[0, 0] > -jnp.inf
 
     def height_at(
         self, map_index: Int[Array, "*batch"], point_in_world: Float[Array, "*batch points 2"]
@@ -106,7 +101,7 @@ class Atlas:
             return then(found - z, *robot[6:])
 
         robot = (cell[..., 0], cell[..., 1], position[..., 2], cosine, sine, first)
-        return compute_once(gather, self.always, self.heights, *robot, *numbers)
+        return compute_once(gather, self.heights, *robot, *numbers)
 
 
 def _nearest(cell: Float[Array, "*batch"], count: int) -> UInt32[Array, "*batch"]:

@@ -9,7 +9,7 @@ from typing import Any
 import jax.numpy as jnp
 import optax
 from jax import Array
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from jaxleas.xla.compute_once import compute_once
 
@@ -21,7 +21,6 @@ def descend(
     state: Any,
     learning_rate: optax.Schedule,
     max_norm: Any,
-    always: Bool[Array, ""],
 ) -> tuple[Float[Array, " weights"], Any, Float[Array, ""]]:
     """Return what to add to the weights, the optimiser's next state and the gradient's norm.
 
@@ -30,7 +29,6 @@ def descend(
         state: state of the optimiser.
         learning_rate: function from the number of steps done to the learning rate.
         max_norm: norm to which longer gradients are shortened.
-        always: value that is true, which the compiler does not know (`compute_once`).
     """
     clipping, (moments, schedule) = state
     count = optax.safe_increment(moments.count)
@@ -44,9 +42,7 @@ def descend(
         return norm, (1.0 - BETA_1) * shortened, second, rate, EPSILON * root
 
     squares = jnp.sum(gradient * gradient)
-    norm, first, second, rate, epsilon = compute_once(
-        numbers, always, squares, count, schedule.count
-    )
+    norm, first, second, rate, epsilon = compute_once(numbers, squares, count, schedule.count)
     mu = BETA_1 * moments.mu + first * gradient
     nu = BETA_2 * moments.nu + second * (gradient * gradient)
     change = -rate * mu / (jnp.sqrt(nu) + epsilon)

@@ -56,7 +56,7 @@ def make_learn(
         rate = learning_rate(ppo, numbers)
         average = Average(AXIS if share else None)
 
-        def descend_all(params, moments, normaliser, always, batch, last, order, flip, noise):
+        def descend_all(params, moments, normaliser, batch, last, order, flip, noise):
             images, last = mirror_images(signature, batch, last, mirror)
             images = replace(images, observation=seen(images.observation, normaliser))
             last = seen(last, normaliser)
@@ -65,7 +65,7 @@ def make_learn(
             def minibatch_step(carry, inputs):
                 params, moments = carry
                 chosen, flip, noise = inputs
-                minibatch, seen_last = take_robots(images, last, first + chosen, flip, always)
+                minibatch, seen_last = take_robots(images, last, first + chosen, flip)
                 gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
                     params,
                     minibatch,
@@ -73,12 +73,11 @@ def make_learn(
                     noise,
                     numbers,
                     networks,
-                    always,
                     average,
                 )
                 vector, as_params = ravel_pytree(gradient)
                 change, moments, metrics["gradient_norm"] = descend(
-                    average.mean(vector), moments, rate, numbers.max_gradient_norm, always
+                    average.mean(vector), moments, rate, numbers.max_gradient_norm
                 )
                 return (optax.apply_updates(params, as_params(change)), moments), metrics
 
@@ -88,14 +87,12 @@ def make_learn(
             return params, moments, average.metrics(metrics)
 
         order, flip, noise = draw_minibatches(ppo, signature.heads, mirror, key)
-        always = state.update >= 0  # true, but the compiler does not know
-        robot_axes = (None, None, None, None, 1, 0, 1, 1, 2)
+        robot_axes = (None, None, None, 1, 0, 1, 1, 2)
         together = share(descend_all, robot_axes) if share else descend_all
         params, moments, metrics = together(
             state.params,
             state.optimiser,
             normaliser,
-            always,
             batch,
             last_observation,
             order,
@@ -197,7 +194,6 @@ def take_robots(
     last_observation: Float[Array, "1 images robots size"],
     chosen: Int[Array, " some"],
     flip: Bool[Array, " some"],
-    always: Bool[Array, ""],
 ) -> tuple[Experience, Float[Array, "1 some size"]]:
     """Return some of the robots, mirrored or as they walked.
 
@@ -206,7 +202,6 @@ def take_robots(
         last_observation: observation of all robots after the last step, likewise.
         chosen: indices of the robots to take.
         flip: whether each of them is mirrored.
-        always: value that is true, which the compiler does not know.
     """
     rows = flip.astype(jnp.int32) * images.reward.shape[2] + chosen
 
@@ -218,6 +213,6 @@ def take_robots(
         return flat.at[begin + rows].get(mode="promise_in_bounds")
 
     # Observations separately: the first layers' products need them both as they are and transposed.
-    seen = compute_once(take, always, images.observation)
+    seen = compute_once(take, images.observation)
     rest = replace(images, observation=images.reward)
     return replace(jax.tree.map(take, rest), observation=seen), take(last_observation)

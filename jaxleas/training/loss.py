@@ -83,7 +83,6 @@ def ppo_loss(
     noise: tuple[Array, ...],
     hyper: Any,
     networks: ActorCritic,
-    always: Array | None = None,
     average: Average = ONE_DEVICE,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the loss and its metrics.
@@ -95,14 +94,11 @@ def ppo_loss(
         noise: standard normal numbers for each head, to sample the entropy with.
         hyper: hyperparameters discount, gae_lambda, clip, entropy, value_weight and reward_scale.
         networks: actor and critic.
-        always: value that is true, which the compiler does not know (`xla.dense`).
         average: average over the devices that hold robots of this minibatch.
     """
     heads = networks.signature.heads
-    now = networks.signature.distributions(
-        networks.answer(params.policy, batch.observation, always)
-    )
-    values = networks.values(params.value, batch.observation, always)
+    now = networks.signature.distributions(networks.answer(params.policy, batch.observation))
+    values = networks.values(params.value, batch.observation)
     last_value = networks.values(jax.lax.stop_gradient(params.value), last_observation)
     targets, advantage = advantages(
         jax.lax.stop_gradient(values),

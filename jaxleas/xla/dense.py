@@ -12,12 +12,11 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax import Array
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from jaxleas.xla.compute_once import compute_once
 
 Activation = Callable[[Array], Array]
-Always = Array | None
 Layers = Sequence[tuple[Array, Array]]
 """Kernel [inputs, outputs] and bias [outputs] of each layer."""
 
@@ -44,7 +43,6 @@ def dense(
     rows: Float[Array, "*batch inputs"],
     activation: Activation,
     numbers: str = "float32",
-    always: Bool[Array, ""] | None = None,
 ) -> Float[Array, "*batch outputs"]:
     """Return the output of dense layers, float32.
 
@@ -53,14 +51,12 @@ def dense(
         rows: inputs of the first layer.
         activation: function between two layers.
         numbers: number type in which products are computed; those of the last layer are float32.
-        always: value that is true, which the compiler does not know: it keeps the activations
-            separate (`compute_once`) for a gradient, whose products need them transposed.
     """
     *inner, (kernel, bias) = layers
     types = [numbers] * (len(inner) - 1) + ["float32"]
     rows = rows.astype(numbers if inner else "float32")
     for (inner_kernel, inner_bias), kind in zip(inner, types, strict=False):
-        rows = _layer(activation, kind, rows, inner_kernel, inner_bias, always)
+        rows = _layer(activation, kind, rows, inner_kernel, inner_bias)
     return product(rows, kernel) + _as_row(bias, rows)
 
 
@@ -69,15 +65,22 @@ def _as_row(bias: Array, rows: Array) -> Array:
 
 
 @partial(jax.custom_vjp, nondiff_argnums=(0, 1))
-def _layer(
-    activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array, always: Always
-) -> Array:
+def _layer(activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array) -> Array:
     """Return activation(rows @ kernel + bias), in the number type of the next product."""
-    return _answer(activation, numbers, rows, kernel, bias, always)[0]
+    return _answer(activation, numbers, rows, kernel, bias, _plainly)[0]
+
+
+def _plainly(function: Callable[..., Array], *operands: Array) -> Array:
+    return function(*operands)
 
 
 def _answer(
-    activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array, always: Always
+    activation: Activation,
+    numbers: str,
+    rows: Array,
+    kernel: Array,
+    bias: Array,
+    compute: Callable[..., Array],
 ) -> tuple[Array, Array]:
     """Return a layer's output, and what its gradient needs: that or the activation's input."""
 
@@ -86,11 +89,7 @@ def _answer(
 
     def answer(sums: str, rows: Array, kernel: Array, bias: Array) -> tuple[Array, Array]:
         before = jnp.matmul(rows, kernel.astype(rows.dtype), preferred_element_type=sums)
-        after = (
-            activate(before, bias)
-            if always is None
-            else compute_once(activate, always, before, bias)
-        )
+        after = compute(activate, before, bias)
         return after, after if _is_relu(activation) else before.astype(rows.dtype)
 
     return _by_platform(answer, rows, kernel, bias)
@@ -100,10 +99,9 @@ def _is_relu(activation: Activation) -> bool:
     return activation is jax.nn.relu
 
 
-def _layer_forward(
-    activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array, always: Always
-):
-    after, kept = _answer(activation, numbers, rows, kernel, bias, always)
+def _layer_forward(activation: Activation, numbers: str, rows: Array, kernel: Array, bias: Array):
+    # Activations apart: the gradient's products need them as they are and transposed.
+    after, kept = _answer(activation, numbers, rows, kernel, bias, compute_once)
     return after, (rows, kernel, bias, kept)
 
 
@@ -115,7 +113,7 @@ def _layer_backward(activation: Activation, numbers: str, kept: tuple[Array, ...
         before = activated + _as_row(bias, activated)
         (slope,) = jax.vjp(activation, before)[1](gradient.astype(before.dtype))
         slope = slope.astype(rows.dtype)
-    return *_product_backward((rows, kernel), slope), _sum_of_rows(slope), None
+    return *_product_backward((rows, kernel), slope), _sum_of_rows(slope)
 
 
 _layer.defvjp(_layer_forward, _layer_backward)

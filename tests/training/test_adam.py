@@ -25,13 +25,13 @@ def test_steps_are_those_of_optax(longest):
     state = expected_state = optimiser.init(WEIGHTS)
     weights = expected = WEIGHTS
     rate = learning_rate(config, numbers)
-    step = jax.jit(lambda vector, state, yes: descend(vector, state, rate, longest, yes))
+    step = jax.jit(lambda vector, state: descend(vector, state, rate, longest))
     for key in jax.random.split(jax.random.key(0), 20):  # 16 fall, then the rate stays
         gradient = {"kernel": jax.random.normal(key, (5, 3)), "bias": jnp.arange(3.0)}
         updates, expected_state = optimiser.update(gradient, expected_state, expected)
         expected = optax.apply_updates(expected, updates)
         vector, as_weights = ravel_pytree(gradient)
-        change, state, norm = step(vector, state, jnp.bool_(True))
+        change, state, norm = step(vector, state)
         weights = optax.apply_updates(weights, as_weights(change))
         np.testing.assert_allclose(norm, optax.global_norm(gradient), rtol=1e-6)
         for found, wanted in zip(

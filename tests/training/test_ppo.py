@@ -133,13 +133,13 @@ def test_mirroring_flips_whole_robots_and_twice_is_none():
     )
     last = jax.random.normal(key, (1, 32, signature.size))
     flip = jax.random.bernoulli(jax.random.key(3), 0.5, (32,))
-    everybody, always = jnp.arange(32), jnp.bool_(True)
+    everybody = jnp.arange(32)
     images = mirror_images(signature, batch, last[0])
-    once = take_robots(*images, everybody, flip, always)
-    twice = take_robots(*mirror_images(signature, once[0], once[1][0]), everybody, flip, always)
+    once = take_robots(*images, everybody, flip)
+    twice = take_robots(*mirror_images(signature, once[0], once[1][0]), everybody, flip)
     jax.tree.map(np.testing.assert_array_equal, twice, (batch, last))
     some = jnp.array([7, 3, 30])
-    few = take_robots(*images, some, flip[some], always)
+    few = take_robots(*images, some, flip[some])
     jax.tree.map(
         lambda of_few, of_all: np.testing.assert_array_equal(of_few, of_all[:, some]), few, once
     )

@@ -198,7 +198,7 @@ class SteeringEnv:
             command = scale_action(action, config.limits)
             return command, integrate(motion, command, config.limits)
 
-        command, motion = compute_once(move, atlas.always, state.motion, action)
+        command, motion = compute_once(move, state.motion, action)
         margin, memory = self._judge_all(atlas, state, motion)
         valid = margin >= 0.0
 

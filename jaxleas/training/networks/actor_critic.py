@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jax import Array
-from jaxtyping import Bool, Float, Key
+from jaxtyping import Float, Key
 
 from jaxleas.envs.signature import Signature
 from jaxleas.training.brax_blocks import PPONetworkParams
@@ -39,25 +39,22 @@ class ActorCritic:
         self,
         policy: Any,
         seen: Float[Array, "*batch size"],
-        always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch logits"]:
         """Return the actor's answer.
 
         Args:
             policy: parameters of the actor.
             seen: normalised observations.
-            always: value that is true, which the compiler does not know (`xla.dense`).
         """
-        return self.actor.answer(policy, self.signature.for_actor(seen), self.numbers, always)
+        return self.actor.answer(policy, self.signature.for_actor(seen), self.numbers)
 
     def values(
         self,
         value: Any,
         seen: Float[Array, "*batch size"],
-        always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch"]:
         """Return the critic's answer; the arguments are those of `answer`."""
-        return self.critic.answer(value, seen, self.numbers, always)[..., 0]
+        return self.critic.answer(value, seen, self.numbers)[..., 0]
 
     def judged(self, policy: Any, seen: Float[Array, "*batch size"]) -> Array:
         """Return the actor's answer as it is judged and exported."""

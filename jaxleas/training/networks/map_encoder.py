@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from jaxtyping import Bool, Float, Key
+from jaxtyping import Float, Key
 
 from jaxleas.envs.signature import Part
 from jaxleas.training.brax_blocks import ACTIVATION
@@ -115,11 +115,10 @@ class MapEncoder:
         params: Any,
         rows: Float[Array, "*batch inputs"],
         numbers: str = "float32",
-        always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
         """Return the answer as training computes it (`Network.answer`)."""
         joined = self._encode(params, rows.astype(numbers))
-        return self._joined.answer(params, joined, numbers, always)
+        return self._joined.answer(params, joined, numbers)
 
     def plain(
         self, params: Any, rows: Float[Array, "*batch inputs"]

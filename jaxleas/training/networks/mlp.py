@@ -7,7 +7,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from jaxtyping import Bool, Float, Key
+from jaxtyping import Float, Key
 
 from jaxleas.training.brax_blocks import ACTIVATION, MLP
 from jaxleas.training.networks.activations import onnx_activation
@@ -41,10 +41,9 @@ class Mlp:
         params: Any,
         rows: Float[Array, "*batch inputs"],
         numbers: str = "float32",
-        always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
         """Return the answer as training computes it (`Network.answer`)."""
-        return dense(layers_of(params), rows, ACTIVATION[self.activation], numbers, always)
+        return dense(layers_of(params), rows, ACTIVATION[self.activation], numbers)
 
     def plain(
         self, params: Any, rows: Float[Array, "*batch inputs"]

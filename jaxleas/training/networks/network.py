@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 import numpy as np
 from jax import Array
-from jaxtyping import Bool, Float, Key
+from jaxtyping import Float, Key
 
 from jaxleas.types.onnx_nodes import OnnxNodes
 
@@ -43,7 +43,6 @@ class Network(Protocol):
         params: Any,
         rows: Float[Array, "*batch inputs"],
         numbers: str = "float32",
-        always: Bool[Array, ""] | None = None,
     ) -> Float[Array, "*batch outputs"]:
         """Return the answer, float32, as training computes it.
 
@@ -51,7 +50,6 @@ class Network(Protocol):
             params: parameters of the network.
             rows: normalised observations.
             numbers: number type in which products are computed.
-            always: value that is true, which the compiler does not know (`xla.dense`).
         """
         ...
 
