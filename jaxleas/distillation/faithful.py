@@ -7,7 +7,7 @@ answers: so an uninterrupted run is as reproducible as its planner.
 """
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
@@ -91,35 +91,35 @@ class Faithful:
         )
         return state if learned is None else learned.into(state)
 
-    def run(
+    def updates(
         self,
         state: TrainState,
-        on_update: Callable[[TrainState, dict[str, Any]], None],
         asked_to_stop: Callable[[], bool] = lambda: False,
         on_wave: Callable[[TrainState, int], None] = lambda state, waiting: None,
-    ) -> TrainState:
-        """Walk, judge and learn until `ppo.updates` updates are done, or until asked to stop.
+    ) -> Generator[tuple[TrainState, dict[str, Any]], None, None]:
+        """Walk, judge and learn, until closed or asked to stop.
 
         Work in flight at that time is discarded: walked, perhaps judged, and not learned from.
 
         Args:
             state: state to continue from.
-            on_update: called with the state and metrics after each update.
-            asked_to_stop: called after each wave and update; returns whether to stop.
-            on_wave: called with the state and the number of waiting steps after each judged wave.
+            asked_to_stop: function that returns whether to stop, called before each wave and
+                update.
+            on_wave: function called with the state and the number of waiting steps after each
+                judged wave.
 
-        Returns:
-            The state after the last update.
+        Yields:
+            The state and metrics after each update.
         """
         self._empty()
         bench = ThreadPoolExecutor(1, thread_name_prefix="exact-planner")
         flying: deque[Future[Wave]] = deque()
         try:
-            while not self._is_over(state) and not asked_to_stop():
+            while not asked_to_stop():
                 batch = self.stream.batch()
                 if batch is not None:
                     state, metrics = self.learn(state, batch)
-                    on_update(state, metrics)
+                    yield state, metrics
                     continue
                 while len(flying) <= self.faithful.ahead:
                     key, walk_key = jax.random.split(state.key)
@@ -130,12 +130,8 @@ class Faithful:
                 self.tally.count(episodes, verdicts)
                 self.stream.add(cut(episodes, verdicts))
                 on_wave(state, len(self.stream))
-            return state
         finally:
             bench.shutdown(wait=True, cancel_futures=True)
-
-    def _is_over(self, state: TrainState) -> bool:
-        return int(state.update) >= self.config.ppo.updates
 
     def learn(
         self, state: TrainState, batch: dict[str, np.ndarray]

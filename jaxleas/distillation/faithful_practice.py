@@ -1,8 +1,9 @@
 """A round's practice in faithful mode, in its run folder: progress, checkpoints, interruption."""
 
 import time
+from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import dataclass
-from typing import Any
 
 import jax
 
@@ -17,8 +18,18 @@ from jaxleas.runs.interruption import Interruption
 from jaxleas.runs.metrics import MetricsLog
 from jaxleas.runs.progress import Progress
 from jaxleas.training.examination import make_examination
-from jaxleas.training.loop import POLICY_FILE, InterruptedRunError, NonFiniteError
+from jaxleas.training.loop import POLICY_FILE
 from jaxleas.training.policy import policy_of, write_policy
+from jaxleas.training.stretches import (
+    InterruptedRunError,
+    Metrics,
+    NonFiniteError,
+    Schedule,
+    Stretch,
+    non_finite,
+    numbers,
+    stretches,
+)
 from jaxleas.training.train_state import Learned, TrainState
 from jaxleas.training.worlds import held_out_world
 
@@ -55,34 +66,32 @@ def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None
     resuming = bool(checkpoints.steps())
     if resuming:
         step, state, _ = checkpoints.latest(jax.eval_shape(lambda: fresh))
-    if int(state.update) >= config.ppo.updates:
-        return
     with (
         MetricsLog(run.path, truncate_after_step=step if resuming else None) as log,
         Progress(config.ppo.updates * config.ppo.batch, start=step) as progress,
         Interruption() as interruption,
     ):
-        desk = _Desk(training, run, checkpoints, log, progress)
+        desk = _Desk(training, run, checkpoints, log, progress, state)
         if not resuming:
-            desk.save(state)
-        state = training.run(state, desk.record, lambda: interruption.requested, desk.show)
-        if int(state.update) < config.ppo.updates:
-            desk.save(state)
-            raise InterruptedRunError(
-                f"interrupted after {int(state.update)} of {config.ppo.updates} updates; what was"
-                f" learned is saved: the same command goes on in {out}"
-            )
+            desk.save()
+        done = desk.work(lambda: interruption.requested)
+    if done < config.ppo.updates:
+        raise InterruptedRunError(
+            f"interrupted after {done} of {config.ppo.updates} updates; what was learned is saved:"
+            f" the same command resumes in {out}"
+        )
 
 
 @dataclass
 class _Desk:
-    """Records each update."""
+    """Drives the updates, and records each of them."""
 
     training: Faithful
     run: RunFolder
     checkpoints: Checkpoints
     log: MetricsLog
     progress: Progress
+    state: TrainState
 
     def __post_init__(self) -> None:
         config = self.training.config
@@ -90,24 +99,40 @@ class _Desk:
         self.held_out = held_out_world(config, task)
         self.examine = jax.jit(make_examination(config, task, self.training.networks))
 
-    def record(self, state: TrainState, metrics: dict[str, Any]) -> None:
-        """Log an update; evaluate and save at intervals."""
-        config, done = self.training.config, int(state.update)
-        bad = [name for name, fine in metrics.items() if "finite/" in name and not fine]
-        if bad:
-            where = ", ".join(name.removeprefix("finite/") for name in bad)
-            raise NonFiniteError(
-                f"update {done} made non-finite numbers in: {where}; the last good state is kept in"
-                f" {self.run.checkpoints}: a smaller practice.learning_rate may help"
-            )
-        numbers = {name: float(each) for name, each in metrics.items() if "finite/" not in name}
-        due = done % config.held_out.every == 0 or done >= config.ppo.updates
-        if due:
-            verdict = self.examine(self.held_out, state.normaliser, state.averaged)
-            numbers |= {name: float(value) for name, value in verdict.items()}
-        self.log.append(done * config.ppo.batch, numbers)
-        if due:
-            self.save(state)
+    def work(self, asked_to_stop: Callable[[], bool]) -> int:
+        """Do the updates, or those that there is time for; return how many are done in all."""
+        config, done = self.training.config, int(self.state.update)
+        schedule = Schedule(config.ppo.updates, config.held_out.every, one_by_one=True)
+        with closing(self._updates(asked_to_stop)) as updates:
+            for stretch in stretches(updates, schedule, done, asked_to_stop):
+                self._record(stretch)
+                done = stretch.done
+                if stretch.due:
+                    self.save()
+        if done < schedule.updates:
+            self.save()
+        return done
+
+    def _updates(self, asked_to_stop: Callable[[], bool]) -> Generator[Metrics, None, None]:
+        updates = self.training.updates(self.state, asked_to_stop, self.show)
+        with closing(updates):
+            for self.state, metrics in updates:
+                yield metrics
+
+    def _record(self, stretch: Stretch) -> None:
+        """Log each update, with the examination in the last row."""
+        examined: dict[str, float] = {}
+        for update, metrics in stretch.rows:
+            where = non_finite(metrics)
+            if where:
+                raise NonFiniteError(
+                    f"update {update} made non-finite numbers in: {where}; the last good state is"
+                    f" kept in {self.run.checkpoints}: a smaller practice.learning_rate may help"
+                )
+            if stretch.due and update == stretch.done:
+                found = self.examine(self.held_out, self.state.normaliser, self.state.averaged)
+                examined = {name: float(value) for name, value in found.items()}
+            self.log.append(update * self.training.config.ppo.batch, numbers(metrics) | examined)
 
     def show(self, state: TrainState, waiting: int) -> None:
         """Show the progress by wave: updates come in bursts, waves at an even pace."""
@@ -115,9 +140,9 @@ class _Desk:
         step = int(state.update) * self.training.config.ppo.batch + waiting
         self.progress.update(min(step, self.progress.total), shown)
 
-    def save(self, state: TrainState) -> None:
+    def save(self) -> None:
         """Save the state and policy."""
-        config = self.training.config
+        config, state = self.training.config, self.state
         policy = policy_of(self.training.networks, config.env, state.normaliser, state.averaged)
         write_policy(self.run.path / POLICY_FILE, policy)
         self.checkpoints.save(int(state.update) * config.ppo.batch, state, {})

@@ -82,7 +82,7 @@ class Conductor:
         self._report_finished()
         done, all_ = len(self._keep()), self.sweep.config.trials
         raise InterruptedSweepError(
-            f"interrupted with {done} of {all_} trials done; all is saved: the same command goes on"
+            f"interrupted with {done} of {all_} trials done; all is saved: the same command resumes"
         )
 
     def _begin(self, trial: Any) -> None:

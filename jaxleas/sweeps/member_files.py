@@ -9,10 +9,11 @@ from jaxleas.runs.metrics import MetricsLog
 from jaxleas.sweeps.population import Population, member_of
 from jaxleas.sweeps.run_folders import hold_run_folder
 from jaxleas.training.config import RunConfig
+from jaxleas.training.loop import POLICY_FILE
 from jaxleas.training.policy import write_policy
+from jaxleas.training.stretches import numbers
 from jaxleas.training.train_state import TrainState
 
-POLICY_FILE = "policy.npz"
 SUCCESS = "held_out/reached"
 
 
@@ -59,8 +60,7 @@ class MemberFiles:
             fractions: fractions of held-out starts; empty: there was no examination.
         """
         for index, (step, metrics) in enumerate(rows):
-            numbers = {name: float(each) for name, each in metrics.items() if "finite/" not in name}
-            self._log.append(step, numbers | (fractions if index == len(rows) - 1 else {}))
+            self._log.append(step, numbers(metrics) | (fractions if index == len(rows) - 1 else {}))
 
     def keep_policy(self, population: Population, states: TrainState, member: int, score: float):
         """Write the policy if it is the best so far; the later of equals, as in a single run."""

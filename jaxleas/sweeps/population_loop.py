@@ -1,6 +1,6 @@
 """The loop of a population: update, examine, evolve, keep everything, be ready to stop."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,15 @@ from jaxleas.sweeps.history import History
 from jaxleas.sweeps.member_files import SUCCESS, MemberFiles
 from jaxleas.sweeps.population import Population
 from jaxleas.sweeps.population_config import Members
-from jaxleas.training.loop import InterruptedRunError
 from jaxleas.training.ppo_params import PpoParams
+from jaxleas.training.stretches import (
+    InterruptedRunError,
+    Metrics,
+    Schedule,
+    Stretch,
+    non_finite,
+    stretches,
+)
 from jaxleas.training.train_state import TrainState
 
 
@@ -102,31 +109,26 @@ class _Loop:
         self.params = self.population.place(PpoParams.stack(configs))
 
     def run(self) -> list[MemberResult]:
-        ppo, every = self.config.ppo, self.config.held_out.every
-        pending: list[tuple[int, Any]] = []
-        total = ppo.updates * ppo.batch * len(self.files)
-        start = self.done * ppo.batch * len(self.files)
-        with Progress(total, start=start) as progress, Interruption() as interruption:
-            while self.done < ppo.updates:
-                self.states, metrics = self.population.train_step(
-                    self.population.world, self.states, self.params
+        ppo, robots = self.config.ppo, len(self.files) * self.config.ppo.batch
+        schedule = Schedule(ppo.updates, self.config.held_out.every)
+        with (
+            Progress(ppo.updates * robots, start=self.done * robots) as progress,
+            Interruption() as interruption,
+        ):
+            for stretch in stretches(
+                self._updates(), schedule, self.done, lambda: interruption.requested
+            ):
+                self.done = stretch.done
+                scores = self._record(stretch)
+                if stretch.due and self.done < ppo.updates:
+                    self._evolve(scores)
+                self._save()
+                progress.update(self.done * robots, self._shown(scores))
+            if self.done < ppo.updates:
+                raise InterruptedRunError(
+                    f"interrupted after {self.done} of {ppo.updates} updates; all is saved:"
+                    " the same command resumes"
                 )
-                self.done += 1
-                pending.append((self.done, metrics))
-                due = self.done % every == 0 or self.done == ppo.updates
-                if due or interruption.requested:
-                    # The only point where the host waits for the devices.
-                    scores = self._record(jax.device_get(pending), due)
-                    pending = []
-                    if due and self.done < ppo.updates:
-                        self._evolve(scores)
-                    self._save()
-                    progress.update(self.done * ppo.batch * len(self.files), self._shown(scores))
-                if interruption.requested and self.done < ppo.updates:
-                    raise InterruptedRunError(
-                        f"interrupted after {self.done} of {ppo.updates} updates; all is saved:"
-                        " the same command goes on"
-                    )
         for number, files in enumerate(self.files):
             if not files.failure:
                 files.conclude(self.states, number, self.done * ppo.batch)
@@ -135,10 +137,17 @@ class _Loop:
             for files, values in zip(self.files, self.values, strict=True)
         ]
 
-    def _record(self, rows: list[tuple[int, Any]], due: bool) -> list[float]:
+    def _updates(self) -> Iterator[Metrics]:
+        while True:
+            self.states, metrics = self.population.train_step(
+                self.population.world, self.states, self.params
+            )
+            yield metrics
+
+    def _record(self, stretch: Stretch) -> list[float]:
         """Write the members' metrics; return their held-out success, NaN for those that failed."""
         examined: dict[str, np.ndarray] = {}
-        if due:
+        if stretch.due:
             states = self.states
             found = self.population.examine(
                 self.population.held_out, states.normaliser, states.averaged
@@ -148,7 +157,7 @@ class _Loop:
         for number, files in enumerate(self.files):
             own = [
                 (update * self.config.ppo.batch, {name: each[number] for name, each in row.items()})
-                for update, row in rows
+                for update, row in stretch.rows
             ]
             files.failure = files.failure or _failure(own)
             scores.append(float("nan"))
@@ -156,7 +165,7 @@ class _Loop:
                 continue
             fractions = {name: float(each[number]) for name, each in examined.items()}
             files.record(own, fractions)
-            if due:
+            if stretch.due:
                 scores[-1] = fractions[SUCCESS]
                 files.keep_policy(self.population, self.states, number, scores[-1])
         return scores
@@ -215,8 +224,7 @@ class _Loop:
 def _failure(rows: list[tuple[int, dict[str, Any]]]) -> str:
     """Return which numbers of a member became infinite or NaN first, or nothing."""
     for step, metrics in rows:
-        bad = [name for name, fine in metrics.items() if "finite/" in name and not fine]
-        if bad:
-            where = ", ".join(name.removeprefix("finite/") for name in bad)
+        where = non_finite(metrics)
+        if where:
             return f"non-finite numbers at step {step} in: {where}"
     return ""

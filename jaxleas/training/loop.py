@@ -1,12 +1,11 @@
 """The training loop: update, log, examine, keep the state, and be ready to stop at any moment."""
 
 import logging
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 import jax
 import numpy as np
-from jax import Array
 
 from jaxleas.envs.environment import Task
 from jaxleas.runs.background import Background
@@ -19,27 +18,24 @@ from jaxleas.runs.watching import require_watchers
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import Policy, read_policy, write_policy
-from jaxleas.training.processes import any_process, from_first
+from jaxleas.training.processes import from_first
 from jaxleas.training.run_config import make_task
+from jaxleas.training.stretches import (
+    InterruptedRunError,
+    Metrics,
+    NonFiniteError,
+    Schedule,
+    Stretch,
+    non_finite,
+    numbers,
+    stretches,
+)
 from jaxleas.training.train_state import Learned, TrainState
 from jaxleas.training.trainer import Trainer
-from jaxleas.types import InputError, JaxleasError
+from jaxleas.types import InputError
 
 POLICY_FILE = "policy.npz"
-# Updates that may be queued on the devices: in XLA:CPU, cores that share a program hang with more
-# than about thirty queued runs of it.
-MOST_AHEAD = 8
 _LOG = logging.getLogger("jaxleas")
-
-
-class NonFiniteError(JaxleasError):
-    """A number became infinite or NaN; the run stops, the last good state is kept."""
-
-
-class InterruptedRunError(JaxleasError):
-    """The run was asked to stop and has saved everything done so far."""
-
-    exit_code = 130  # what a shell reports for Ctrl-C
 
 
 def train(
@@ -185,29 +181,26 @@ class _Session:
     recorder: "_Recorder | None"
 
     def run(self, state: TrainState) -> None:
-        config = self.trainer.config
-        alone = jax.process_count() == 1
-        done = int(state.update)
-        pending: list[tuple[int, dict[str, Array]]] = []
-        while done < config.ppo.updates:
-            state, metrics = self.trainer.train_step(self.trainer.world, state)
-            done += 1
-            pending.append((done, metrics))
-            if len(pending) >= MOST_AHEAD:
-                jax.block_until_ready(pending[-MOST_AHEAD][1])
-            due = done % config.held_out.every == 0 or done == config.ppo.updates
-            # Several processes decide together, where they wait for each other anyway.
-            if due or (alone and self.interruption.requested):
-                # The only point where the host waits for the newest update.
-                rows = self._check(pending)
-                pending = []
-                fractions = self._examine(state) if due else {}
-                kept = self.trainer.gather(state)
-                if self.recorder is not None:
-                    self.recorder.record(rows, fractions)
-                    self.recorder.save(kept, done, fractions)
-                if any_process(self.interruption.requested) and done < config.ppo.updates:
-                    raise InterruptedRunError(self._farewell(done))
+        self.state = state
+        config, done = self.trainer.config, int(state.update)
+        schedule = Schedule(config.ppo.updates, config.held_out.every)
+        for stretch in stretches(
+            self._updates(), schedule, done, lambda: self.interruption.requested
+        ):
+            done = stretch.done
+            self._require_finite(stretch)
+            fractions = self._examine() if stretch.due else {}
+            kept = self.trainer.gather(self.state)
+            if self.recorder is not None:
+                self.recorder.record(stretch, fractions)
+                self.recorder.save(kept, done, fractions)
+        if done < schedule.updates:
+            raise InterruptedRunError(self._farewell(done))
+
+    def _updates(self) -> Iterator[Metrics]:
+        while True:
+            self.state, metrics = self.trainer.train_step(self.trainer.world, self.state)
+            yield metrics
 
     def _farewell(self, done: int) -> str:
         where = "RUN" if self.recorder is None else self.recorder.run.path
@@ -216,13 +209,10 @@ class _Session:
             f" resume with  python train.py --resume {where}"
         )
 
-    def _check(self, pending: list[tuple[int, dict[str, Array]]]) -> list[tuple[int, dict]]:
-        """Fetch the metrics of the updates since the last check; stop at a non-finite number."""
-        rows = jax.device_get(pending)
-        for update, metrics in rows:
-            bad = [name for name, fine in metrics.items() if "finite/" in name and not fine]
-            if bad:
-                where = ", ".join(name.removeprefix("finite/") for name in bad)
+    def _require_finite(self, stretch: Stretch) -> None:
+        for update, metrics in stretch.rows:
+            where = non_finite(metrics)
+            if where:
                 step = update * self.trainer.config.ppo.batch
                 folder = (
                     "process 0's run folder"
@@ -234,9 +224,9 @@ class _Session:
                     f" good state is kept in {folder}: a smaller learning rate or"
                     " max_gradient_norm may help"
                 )
-        return rows
 
-    def _examine(self, state: TrainState) -> dict[str, float]:
+    def _examine(self) -> dict[str, float]:
+        state = self.state
         fractions = self.trainer.examine(self.trainer.held_out, state.normaliser, state.averaged)
         return {name: float(value) for name, value in fractions.items()}
 
@@ -254,18 +244,15 @@ class _Recorder:
     best: float
     on_examined: Callable[[], None]
 
-    def record(self, rows: list[tuple[int, dict]], fractions: dict[str, float]) -> None:
-        batch = self.trainer.config.ppo.batch
-        for update, metrics in rows:
-            numbers = {
-                name: float(value) for name, value in metrics.items() if "finite/" not in name
-            }
-            last = update == rows[-1][0]
-            self.log.append(update * batch, numbers | (fractions if last else {}))
-        shown = {"return": f"{float(rows[-1][1]['walk/reward']):.3f} per step"}
+    def record(self, stretch: Stretch, fractions: dict[str, float]) -> None:
+        batch, metrics = self.trainer.config.ppo.batch, {}
+        for update, metrics in stretch.rows:
+            last = update == stretch.done
+            self.log.append(update * batch, numbers(metrics) | (fractions if last else {}))
+        shown = {"return": f"{float(metrics['walk/reward']):.3f} per step"}
         if fractions:
             shown["held out"] = f"{100 * fractions['held_out/reached']:.1f} %"
-        self.progress.update(rows[-1][0] * batch, shown)
+        self.progress.update(stretch.done * batch, shown)
 
     def save(self, state: TrainState, done: int, fractions: dict[str, float]) -> None:
         """Write the state, and the policy if it is the best, while the training continues."""

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from itertools import islice
 
 import jax
 import numpy as np
@@ -19,8 +20,8 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.labels import Judge, ProcessWorkers, Verdict
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain.generator import generate_arena
-from jaxleas.training.loop import InterruptedRunError
 from jaxleas.training.normaliser import normalise
+from jaxleas.training.stretches import InterruptedRunError
 from jaxleas.training.train_state import Learned
 from jaxleas.training.worlds import training_world
 
@@ -86,9 +87,8 @@ def training(ground):
 def run(training, judge, stop=lambda: False):
     """Train from fresh networks; return parameters, metrics and update after each update."""
     training.judge = judge
-    told = []
-    state = training.run(training.fresh_state(None), lambda *each: told.append(each), stop)
-    return state, [metrics for _, metrics in told]
+    told = list(islice(training.updates(training.fresh_state(None), stop), CONFIG.ppo.updates))
+    return told[-1][0], [metrics for _, metrics in told]
 
 
 def same(one, other):
@@ -167,7 +167,7 @@ def test_when_workers_die_the_training_is_the_same(training):
         assert one["planner/passed"] == other["planner/passed"]
 
 
-def test_an_interrupted_practice_goes_on_from_what_it_learned(training, tmp_path):
+def test_an_interrupted_practice_resumes_from_what_it_learned(training, tmp_path):
     folder = RoundFolder(tmp_path / "out" / "round_1")
     learned = Learned.of(training.fresh_state(None))
 
@@ -179,7 +179,7 @@ def test_an_interrupted_practice_goes_on_from_what_it_learned(training, tmp_path
             os.kill(os.getpid(), signal.SIGINT)
 
     training.judge = Strict(interrupt)
-    with pytest.raises(InterruptedRunError, match="the same command goes on in"):
+    with pytest.raises(InterruptedRunError, match="the same command resumes in"):
         practise_faithfully(folder, training, learned)
     assert not folder.practised.exists()
     rows = read_metrics(folder.run / "metrics.jsonl")
@@ -223,8 +223,7 @@ def test_a_policy_learns_to_avoid_what_its_planner_cannot_do(ground):
     training = Faithful(
         config, robots, SteeringEnv(config.env), ground.world, ground.scenes, Dizzy()
     )
-    told = []
-    training.run(training.fresh_state(None), lambda state, metrics: told.append(metrics))
-    failures = [each["planner/failures_per_1000_steps"] for each in told]
+    told = islice(training.updates(training.fresh_state(None)), config.ppo.updates)
+    failures = [metrics["planner/failures_per_1000_steps"] for _, metrics in told]
     assert failures[0] > 450
     assert np.mean(failures[-3:]) < 0.85 * failures[0]

@@ -150,7 +150,7 @@ def test_ctrl_c_saves_and_says_how_to_go_on(tmp_path):
     process.join(60)
     words = log.read_text()
     assert process.exitcode == 130
-    assert "the same command goes on" in words
+    assert "the same command resumes" in words
     assert words.count("\n") == 1
     assert told(out) >= 1
 

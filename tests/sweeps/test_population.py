@@ -131,7 +131,7 @@ def test_an_interrupted_evolution_goes_on_as_if_it_had_not_been(tmp_path, monkey
         property(lambda self: next(calls) >= 4, lambda self, value: None),
         raising=False,
     )
-    with pytest.raises(InterruptedRunError, match="the same command goes on"):
+    with pytest.raises(InterruptedRunError, match="the same command resumes"):
         train_population(members, [cut / f"m{n}" for n in range(2)], cut)
     monkeypatch.undo()
     again = train_population(members, [cut / f"m{n}" for n in range(2)], cut)
