@@ -14,7 +14,7 @@ from importlib.metadata import version
 from typing import Any, NoReturn
 
 from jaxleas.cli_guard import UsageError, run_guarded
-from jaxleas.cli_options import add_options
+from jaxleas.cli_options import add_options, arguments_of
 
 # Command -> (the room's module, its function, its purpose).
 COMMANDS = {
@@ -121,7 +121,7 @@ def _call(name: str, arguments: Sequence[str]) -> None:
             f"jaxleas {name} has no {unknown[0]}{_nearest(unknown[0], options)}; "
             f"see jaxleas {name} --help"
         )
-    function(**vars(given))
+    function(**arguments_of(function, given))
 
 
 def _is_group_alone(arguments: Sequence[str]) -> bool:

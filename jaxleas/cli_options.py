@@ -5,6 +5,7 @@ import inspect
 import types
 import typing
 from collections.abc import Callable, Sequence
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 
@@ -13,7 +14,7 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
 
     The first parameter, if it may be given by position and has no default, becomes a positional
     argument, and so does everything before a `*`; every other parameter an option `--its-name`,
-    required if it has no default.
+    required if it has no default. A parameter that is a dataclass becomes one option per field.
 
     Args:
         parser: parser that gets the options, and its description from the docstring's first line.
@@ -22,12 +23,15 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
     """
     text = inspect.getdoc(function) or ""
     parser.description = text.partition("\n\n")[0]
-    helps = _argument_helps(text)
+    helps = _helps(text, "Args")
     hints = typing.get_type_hints(function, include_extras=True)
     parameters = list(inspect.signature(function).parameters.values())
     starred = any(each.kind is each.KEYWORD_ONLY for each in parameters)
     for index, parameter in enumerate(parameters):
         name = parameter.name
+        if is_dataclass(hints.get(name)):
+            _add_group(parser, hints[name])
+            continue
         options = _options_of_type(hints.get(name, str))
         required = parameter.default is parameter.empty
         words = [helps.get(name, ""), *options.pop("names", ())]
@@ -43,11 +47,43 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
             parser.add_argument(name, metavar=name.upper(), **options)
             continue
         if not required:
-            options["default"] = parameter.default
-            if parameter.default not in (None, False, ()):
-                options["help"] += f" [{parameter.default}]".replace("%", "%%")
-        flag = "--" + name.strip("_").replace("_", "-")
-        parser.add_argument(flag, dest=name, required=required, **options)
+            _state_default(options, parameter.default)
+        parser.add_argument(_flag(name), dest=name, required=required, **options)
+
+
+def arguments_of(function: Callable[..., Any], given: argparse.Namespace) -> dict[str, Any]:
+    """Return the arguments of a function from what `add_options` made a parser read.
+
+    Args:
+        function: function that the options were made of.
+        given: values by option, as the parser returned them.
+    """
+    values = dict(vars(given))
+    for name, hint in typing.get_type_hints(function).items():
+        if is_dataclass(hint) and isinstance(hint, type):
+            values[name] = hint(**{each.name: values.pop(each.name) for each in fields(hint)})
+    return values
+
+
+def _add_group(parser: argparse.ArgumentParser, group: Any) -> None:
+    """Add the fields of a dataclass, all of which have defaults, as options."""
+    helps = _helps(inspect.getdoc(group) or "", "Attributes")
+    hints = typing.get_type_hints(group, include_extras=True)
+    for each in fields(group):
+        options = _options_of_type(hints[each.name])
+        options["help"] = helps.get(each.name, "").replace("%", "%%")
+        _state_default(options, each.default)
+        parser.add_argument(_flag(each.name), dest=each.name, **options)
+
+
+def _flag(name: str) -> str:
+    return "--" + name.strip("_").replace("_", "-")
+
+
+def _state_default(options: dict[str, Any], default: Any) -> None:
+    options["default"] = default
+    if default not in (None, False, ()):
+        options["help"] += f" [{default}]".replace("%", "%%")
 
 
 def _options_of_type(annotation: Any) -> dict[str, Any]:
@@ -76,9 +112,9 @@ def _plainest(members: list[Any]) -> Any:
     return next((each for each in members if each is not str), str)
 
 
-def _argument_helps(docstring: str) -> dict[str, str]:
-    """Return the sentences under `Args:` in a docstring, by parameter."""
-    _, found, rest = docstring.partition("\nArgs:\n")
+def _helps(docstring: str, section: str) -> dict[str, str]:
+    """Return the sentences under `Args:` or `Attributes:` in a docstring, by name."""
+    _, found, rest = docstring.partition(f"\n{section}:\n")
     helps: dict[str, str] = {}
     name = ""
     for line in rest.splitlines() if found else ():

@@ -1,6 +1,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Literal
@@ -223,3 +224,45 @@ def test_help_loads_nothing_heavy() -> None:
         "assert not heavy, heavy"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+@dataclass(frozen=True)
+class Shoes:
+    """What is worn.
+
+    Attributes:
+        size: length of the sole [cm].
+        laces: whether they have laces.
+    """
+
+    size: float = 27.0
+    laces: bool = True
+
+
+def stroll(policy: Path, *, shoes: Shoes = Shoes(), steps: int = 3) -> None:
+    """Stroll.
+
+    Args:
+        policy: run folder.
+        shoes: what is worn.
+        steps: number of steps.
+    """
+    CALLS.append(dict(locals()))
+
+
+def test_a_value_of_named_fields_is_one_option_per_field(monkeypatch, capsys):
+    rooms = {"room": SimpleNamespace(stroll=stroll)}
+    monkeypatch.setattr(cli, "COMMANDS", {"stroll": ("room", "stroll", "stroll")})
+    monkeypatch.setattr(cli, "import_module", rooms.__getitem__)
+    cli.run(["stroll", "run", "--size", "25.5", "--no-laces"])
+    cli.run(["stroll", "run", "--steps", "4"])
+    assert [
+        {"policy": Path("run"), "shoes": Shoes(25.5, laces=False), "steps": 3},
+        {"policy": Path("run"), "shoes": Shoes(), "steps": 4},
+    ] == CALLS
+    with pytest.raises(SystemExit):
+        cli.run(["stroll", "--help"])
+    shown = capsys.readouterr().out
+    assert "--size" in shown
+    assert "length of the sole [cm]. [27.0]" in shown
+    assert "--shoes" not in shown

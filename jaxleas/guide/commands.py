@@ -3,10 +3,11 @@
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jaxleas.terrain.reading import READING, Reading
 from jaxleas.types import InputError, is_ground
 
 if TYPE_CHECKING:
@@ -29,14 +30,9 @@ def rollout(
     queries: Path,
     out: Path,
     steps: int = 800,
-    resolution: float | None = None,
     steering: str = "leas",
     picture: Path | None = None,
-    up: Literal["x", "y", "z"] = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
+    reading: Reading = READING,
     allow: Sequence[str] | None = None,
 ) -> None:
     """Walk a policy on any terrain and write its guide paths.
@@ -47,15 +43,10 @@ def rollout(
         queries: .json list of {position, yaw, velocity, goal}.
         out: the guide paths, .npz.
         steps: maximum number of configurations after the first one of a path.
-        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
         steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
             MODULE:CLASS of your own, under its conditions.
         picture: draw the paths from above (.png, .svg, .pdf).
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black means no ground in a .png.
+        reading: what the terrain file does not state itself.
         allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
             condition; by default R* and C.
     """
@@ -71,15 +62,7 @@ def rollout(
     if picture is not None:
         require_picture(picture)
     walker = load_policy(policy, allow or ())
-    ground = import_terrain(
-        terrain,
-        resolution=resolution,
-        up=up,
-        scale=scale,
-        z_min=z_min,
-        z_max=z_max,
-        zero_is_void=zero_is_void,
-    )
+    ground = import_terrain(terrain, reading)
     require_on_terrain(queries, asked, ground)
     env = SteeringEnv(walker.config, allow=allow or ())
     config = env.config

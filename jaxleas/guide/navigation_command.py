@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from jaxleas.guide.commands import steering_named
+from jaxleas.terrain.reading import READING, Reading
 from jaxleas.types import InputError, RootMotion
 
 if TYPE_CHECKING:
@@ -31,12 +32,7 @@ def navigate(
     seed: int = 0,
     out: Path,
     picture: Path | None = None,
-    resolution: float | None = None,
-    up: Literal["x", "y", "z"] = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
+    reading: Reading = READING,
 ) -> None:
     """Find a guide path between two places on any terrain, through waypoints where needed.
 
@@ -56,12 +52,7 @@ def navigate(
         seed: random seed of the search.
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
-        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black means no ground in a .png.
+        reading: what the file does not state itself.
 
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
@@ -86,19 +77,11 @@ def navigate(
         import_ompl()
     keep_compiled_programs()
     env, method = _steering(steering, policy)
-    ground = import_terrain(
-        terrain,
-        resolution=resolution,
-        up=up,
-        scale=scale,
-        z_min=z_min,
-        z_max=z_max,
-        zero_is_void=zero_is_void,
-    )
+    ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
     places.require_valid("--to", goal, None)
-    scene = scene_of(terrain, up, scale)
+    scene = scene_of(terrain, reading.up, reading.scale)
     if scene is not None:
         require_exact_start(places, scene, motion)
     navigator = make_navigator(places, method, steering, planner, scene)

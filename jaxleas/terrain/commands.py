@@ -11,7 +11,8 @@ from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap, write_height_map
 from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.mesh_scene import mesh_to_scene
-from jaxleas.terrain.meshes import SUFFIXES, Up
+from jaxleas.terrain.meshes import SUFFIXES
+from jaxleas.terrain.reading import READING, Reading
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types.errors import InputError
@@ -21,35 +22,17 @@ def show(
     file: Path,
     *,
     out: Path | None = None,
-    resolution: float | None = None,
-    up: Up = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
+    reading: Reading = READING,
 ) -> Path:
     """Draw a terrain file from above, and print its size.
 
     Args:
         file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
         out: file of the picture; by default NAME_view.png in the current folder.
-        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black in a .png means no ground.
+        reading: what the file does not state itself.
     """
     picture = Path(f"{file.stem}_view.png") if out is None else out
-    height_map = import_terrain(
-        file,
-        resolution=resolution,
-        up=up,
-        scale=scale,
-        z_min=z_min,
-        z_max=z_max,
-        zero_is_void=zero_is_void,
-    )
+    height_map = import_terrain(file, reading)
     draw_height_map(height_map, picture, title=file.name)
     print(f"{file}: {describe(height_map)}\ndrawn in {picture}")
     return picture
@@ -59,41 +42,23 @@ def convert(
     file: Path,
     *,
     out: Path,
-    resolution: float | None = None,
-    up: Up = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
+    reading: Reading = READING,
 ) -> Path:
     """Import a mesh, an image or a scene as a height map (.npz), or a mesh as a scene (.json).
 
     Args:
         file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
         out: file of the height map, .npz; for a mesh also .json, the scene of its polygons.
-        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black in a .png means no ground.
+        reading: what the file does not state itself.
     """
     if file.suffix.lower() in SUFFIXES and out.suffix == ".json":
-        scene = mesh_to_scene(file, up, scale)
+        scene = mesh_to_scene(file, reading.up, reading.scale)
         write_scene(out, scene)
         surfaces, obstacles = len(scene.surfaces), len(scene.obstacles)
         print(f"{file}: {surfaces} surfaces, {obstacles} obstacles\nwritten to {out}")
         return out
     _require_suffix(out, ".npz")
-    height_map = import_terrain(
-        file,
-        resolution=resolution,
-        up=up,
-        scale=scale,
-        z_min=z_min,
-        z_max=z_max,
-        zero_is_void=zero_is_void,
-    )
+    height_map = import_terrain(file, reading)
     write_height_map(out, height_map)
     print(f"{file}: {describe(height_map)}\nwritten to {out}")
     return out

@@ -3,7 +3,9 @@
 import io
 import struct
 import zlib
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Int
@@ -16,8 +18,9 @@ from jaxleas.terrain.height_map import (
     require_resolution,
     require_usable,
 )
-from jaxleas.terrain.meshes import SUFFIXES, Up, read_triangles
+from jaxleas.terrain.meshes import SUFFIXES, read_triangles
 from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION, rasterise, rasterise_polygons
+from jaxleas.terrain.reading import READING, Reading, Up
 from jaxleas.terrain.scene import read_scene
 from jaxleas.types.errors import InputError
 
@@ -29,48 +32,36 @@ WHITE = 65535
 MAX_PNG_BYTES = 2**28
 
 
-def import_terrain(
-    path: str | Path,
-    *,
-    resolution: float | None = None,
-    up: Up = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
-) -> HeightMap:
+def import_terrain(path: str | Path, reading: Reading = READING, **stated: Any) -> HeightMap:
     """Return the height map of a terrain file, read by its suffix.
 
     Args:
         path: path of a .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        resolution: edge of a cell [m]; 0.04 by default for meshes and scenes, needed for .png.
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black in a .png means that there is no ground.
+        reading: what the file does not state itself.
+        stated: values by name that replace those of `reading`, such as resolution=0.02.
 
     Raises:
         InputError: the suffix is unknown, the file is unusable, or an option is missing.
     """
+    how = replace(reading, **stated)
     suffix = Path(path).suffix.lower()
     if suffix == ".npz":
         height_map = read_height_map(path)
-        if resolution is not None and not np.isclose(resolution, height_map.resolution):
+        if how.resolution is not None and not np.isclose(how.resolution, height_map.resolution):
             raise InputError(
                 f"{path} is a map of {height_map.resolution:g} m cells; "
-                f"it cannot be read at a resolution of {resolution:g} m"
+                f"it cannot be read at a resolution of {how.resolution:g} m"
             )
         return height_map
-    cell = DEFAULT_RESOLUTION if resolution is None else resolution
+    cell = DEFAULT_RESOLUTION if how.resolution is None else how.resolution
     if suffix == ".json":
         return rasterise(read_scene(path), cell)
     if suffix in SUFFIXES:
-        return import_mesh(path, cell, up, scale)
+        return import_mesh(path, cell, how.up, how.scale)
     if suffix == ".png":
-        if resolution is None or z_min is None or z_max is None:
+        if how.resolution is None or how.z_min is None or how.z_max is None:
             raise InputError(f"{path} is an image: say its resolution, z_min and z_max [m]")
-        return import_png(path, resolution, z_min, z_max, zero_is_void)
+        return import_png(path, how.resolution, how.z_min, how.z_max, how.zero_is_void)
     known = ", ".join((".npz", ".json", *SUFFIXES, ".png"))
     raise InputError(f"{path}: unknown terrain file type '{suffix}'; known are {known}")
 

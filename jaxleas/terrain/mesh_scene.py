@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.meshes import SUFFIXES, Up, read_triangles
+from jaxleas.terrain.meshes import SUFFIXES, read_triangles
 from jaxleas.terrain.polygons import (
     CONVEXITY_TOLERANCE,
     MIN_AREA,
@@ -16,6 +16,7 @@ from jaxleas.terrain.polygons import (
     planarity_deviation,
     polygon_area_vector,
 )
+from jaxleas.terrain.reading import Up
 from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.types.errors import InputError
 

@@ -1,15 +1,14 @@
 """Meshes as triangles, z up and in metres; meshes that are not terrains are refused."""
 
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
 from jaxleas.terrain.mesh_files import read_mesh
+from jaxleas.terrain.reading import Up
 from jaxleas.types.errors import InputError
 
-Up = Literal["x", "y", "z"]
 SUFFIXES = (".stl", ".obj")
 MIN_EXTENT, MAX_EXTENT = 0.5, 1000.0
 """Accepted horizontal sizes of a terrain [m]."""

@@ -1,6 +1,7 @@
 """The user's own terrain files, which a configuration names."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +11,7 @@ from jaxleas.configuration.strict import Strict
 from jaxleas.files import digest_of, require_digest
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.meshes import Up
+from jaxleas.terrain.reading import Reading, Up
 from jaxleas.types.errors import InputError
 
 KEY = "terrain.files"  # name of the configuration field, for messages
@@ -34,6 +35,11 @@ class TerrainFile(Strict):
     """whether black in a .png means that there is no ground"""
     sha256: str | None = None
     """digest of the file, recorded when a run begins"""
+
+    def reading(self, resolution: float) -> Reading:
+        """Return how the file is read, in cells of this edge [m]."""
+        stated = {each.name: getattr(self, each.name) for each in fields(Reading)[1:]}
+        return Reading(resolution, **stated)
 
 
 def _kind(value: Any) -> str:
@@ -78,15 +84,7 @@ def read_own_terrain(files: Sequence[Entry], resolution: float) -> list[tuple[st
     for each in map(_settled, files):
         try:
             require_digest(each.file, each.sha256)
-            height_map = import_terrain(
-                each.file,
-                resolution=resolution,
-                up=each.up,
-                scale=each.scale,
-                z_min=each.z_min,
-                z_max=each.z_max,
-                zero_is_void=each.zero_is_void,
-            )
+            height_map = import_terrain(each.file, each.reading(resolution))
         except InputError as error:
             raise InputError(f"{KEY}: {error}") from error
         maps.append((f"{KEY}: {each.file}", height_map))

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
+from jaxleas.terrain.reading import READING, Reading
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,12 +32,7 @@ def view(
     host: str = "127.0.0.1",
     port: int = 8080,
     browser: bool = True,
-    resolution: float | None = None,
-    up: Literal["x", "y", "z"] = "z",
-    scale: float = 1.0,
-    z_min: float | None = None,
-    z_max: float | None = None,
-    zero_is_void: bool = False,
+    reading: Reading = READING,
 ) -> None:
     """Show a terrain in the browser; drive policies on it, play back paths and plans.
 
@@ -52,12 +48,7 @@ def view(
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
-        resolution: edge of a cell [m]; 0.04 by default, needed for .png.
-        up: axis of a mesh that points up.
-        scale: metres per unit of a mesh.
-        z_min: height of black in a .png [m].
-        z_max: height of white in a .png [m].
-        zero_is_void: whether black means no ground in a .png.
+        reading: what the file does not state itself.
     """
     from jaxleas.terrain.importers import import_terrain
     from jaxleas.terrain.scene import read_scene
@@ -74,15 +65,7 @@ def view(
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
     clips = _clips(guide, plan, problem)
-    ground = import_terrain(
-        terrain,
-        resolution=resolution,
-        up=up,
-        scale=scale,
-        z_min=z_min,
-        z_max=z_max,
-        zero_is_void=zero_is_void,
-    )
+    ground = import_terrain(terrain, reading)
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
