@@ -19,8 +19,12 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:  # the workers of pytest-xdist
     os.environ["JAX_COMPILATION_CACHE_DIR"] = _CACHE
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
 
+import hypothesis
 import jax  # after its environment variables
 
+# A first example compiles: how long it takes says nothing about the law that is tested.
+hypothesis.settings.register_profile("jaxleas", deadline=None)
+hypothesis.settings.load_profile("jaxleas")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_debug_nans", True)
 

@@ -28,7 +28,7 @@ def test_position_moves_by_the_velocity_of_before():
     np.testing.assert_allclose(after.yaw, 0.32, rtol=1e-6)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.lists(numbers, min_size=4, max_size=4), st.floats(-3, 3, width=32))
 def test_no_action_breaks_a_bound(action, yaw):
     command = scale_action(jnp.array(action, jnp.float32), LIMITS)

@@ -111,7 +111,7 @@ def whole(tmp_path_factory) -> Path:
     return run
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(name=st.sampled_from(FILES), cut=st.floats(0.0, 1.0), junk=st.binary(max_size=8))
 def test_no_damage_is_a_crash(whole: Path, name: str, cut: float, junk: bytes) -> None:
     file = whole / name
