@@ -8,6 +8,8 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
+from jaxleas.types.errors import InputError
+
 
 @dataclass(frozen=True)
 class Mirror:
@@ -16,10 +18,32 @@ class Mirror:
     Attributes:
         order: index in the vector from which each value of its image is taken.
         sign: 1 or -1 for each value of the image.
+
+    Raises:
+        InputError: swapping twice would not give the vector back.
     """
 
     order: tuple[int, ...]
     sign: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        order, sign = self.order, self.sign
+        if sorted(order) != list(range(len(order))) or len(sign) != len(order):
+            raise InputError(
+                f"a mirror has the order {_short(order)} and the sign {_short(sign)}: give an order"
+                " that names each value once, and a sign for each"
+            )
+        twice = [(order[place], sign[place] * sign[i]) for i, place in enumerate(order)]
+        if any(each not in (1, -1) for each in sign) or twice != [(i, 1) for i in range(len(sign))]:
+            raise InputError(
+                f"a mirror of the order {_short(order)} and the sign {_short(sign)} is not its own"
+                " inverse: swapping left and right twice must change nothing, and signs are 1 or -1"
+            )
+
+    @property
+    def size(self) -> int:
+        """Number of values of the vector."""
+        return len(self.order)
 
     @classmethod
     def of_signs(cls, sign: Sequence[float]) -> "Mirror":
@@ -58,3 +82,28 @@ class Mirror:
             return vector
         order = jnp.asarray(self.order, jnp.int32)
         return vector.at[..., order].get(mode="promise_in_bounds")
+
+
+def require_mirror(mirror: Mirror | None, size: int, what: str) -> None:
+    """Refuse a mirror of another length than the vector.
+
+    Args:
+        mirror: mirror, or None where there is no symmetry.
+        size: number of values of the vector.
+        what: name of the vector, with which the message begins.
+
+    Raises:
+        InputError: the mirror is none, or of another length.
+    """
+    if mirror is None:
+        return
+    if not isinstance(mirror, Mirror):
+        raise InputError(
+            f"{what} has the mirror {mirror!r}; give a Mirror, such as Mirror.of_signs"
+        )
+    if mirror.size != size:
+        raise InputError(f"{what} has {size} values, but its mirror is one of {mirror.size}")
+
+
+def _short(values: Sequence[float]) -> str:
+    return str(values) if len(values) <= 12 else f"({', '.join(map(str, values[:12]))}, ...)"

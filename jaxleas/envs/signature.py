@@ -16,8 +16,10 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
+from jaxleas.envs.array_checks import kind_of
 from jaxleas.envs.heads.head import Head
-from jaxleas.envs.mirror import Mirror
+from jaxleas.envs.mirror import Mirror, require_mirror
+from jaxleas.types.errors import InputError
 from jaxleas.xla.split import split
 
 Numbers = float | tuple[float, ...]
@@ -45,6 +47,24 @@ class Part:
     mirror: Mirror | None = None
     critic_only: bool = False
 
+    def __post_init__(self) -> None:
+        what, shape = f"the part {self.name!r}", self.shape
+        is_shape = isinstance(shape, tuple) and len(shape) in (1, 2)
+        if not is_shape or not all(_is_count(side) for side in shape):
+            raise InputError(
+                f"{what} has the shape {shape!r}; give (n,) for a vector, (rows, columns) for a map"
+            )
+        for kind in ("mean", "deviation"):
+            numbers = np.asarray(getattr(self, kind), np.float32)
+            if numbers.shape not in ((), (self.size,)) or not np.isfinite(numbers).all():
+                raise InputError(
+                    f"{what} has {self.size} values, but its {kind} is {getattr(self, kind)!r}:"
+                    f" give one finite number, or a tuple of {self.size}"
+                )
+        if not np.all(np.asarray(self.deviation) > 0.0):
+            raise InputError(f"{what} has the deviation {self.deviation!r}, which must be above 0")
+        require_mirror(self.mirror, self.size, what)
+
     @property
     def size(self) -> int:
         """Number of values."""
@@ -69,14 +89,19 @@ class Signature:
     heads: tuple[Head, ...]
 
     def __post_init__(self) -> None:
-        for kind, names in (
-            ("parts", [part.name for part in self.parts]),
-            ("heads", [head.name for head in self.heads]),
-        ):
-            if not names or len(set(names)) < len(names):
-                raise ValueError(f"{kind} need names, each one once: {names}")
+        for kind, items in (("parts", self.parts), ("heads", self.heads)):
+            if not isinstance(items, tuple) or not items:
+                raise InputError(
+                    f"the signature's {kind} are {kind_of(items)}; give a tuple of one at least, as"
+                    f" in ({kind[:-1]},)"
+                )
+            names = [item.name for item in items]
+            if len(set(names)) < len(names) or not all(isinstance(name, str) for name in names):
+                raise InputError(f"the signature's {kind} need names, each one once: {names}")
         if all(part.critic_only for part in self.parts):
-            raise ValueError("every part of the observation is the critic's alone")
+            raise InputError(
+                "every part of the observation is critic_only; the policy must see one at least"
+            )
 
     @cached_property
     def size(self) -> int:
@@ -116,9 +141,16 @@ class Signature:
 
         Returns:
             An array [*batch, size].
+
+        Raises:
+            InputError: a part is missing.
         """
         if not isinstance(observation, Mapping):
             observation = {self.parts[0].name: observation}
+        missing = [part.name for part in self.parts if part.name not in observation]
+        if missing:
+            names = ", ".join(part.name for part in self.parts)
+            raise InputError(f"an observation lacks the part {missing[0]}; give arrays of {names}")
         flat = [_flat(observation[part.name], part.shape) for part in self.parts]
         if len(flat) == 1:
             return flat[0]
@@ -198,6 +230,10 @@ class Signature:
         if len(each) == 1:
             return each[0]
         return {head.name: value for head, value in zip(self.heads, each, strict=True)}
+
+
+def _is_count(side: Any) -> bool:
+    return isinstance(side, int | np.integer) and int(side) > 0
 
 
 def _each(number: Numbers, size: int) -> np.ndarray:

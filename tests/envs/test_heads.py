@@ -8,6 +8,7 @@ import pytest
 from jaxleas.envs.heads import Ball, Categorical, Interval, Normal
 from jaxleas.envs.mirror import Mirror
 from jaxleas.envs.signature import Part, Signature
+from jaxleas.types import InputError
 
 NORMAL = Normal("move", (Ball(2.0, 2), Interval(1.0, 5.0)), Mirror((0, 1, 2), (1.0, -1.0, 1.0)))
 CHOICE = Categorical("foot", 5, (1, 0, 3, 2, 4))
@@ -108,8 +109,59 @@ def test_actions_of_several_heads_go_by_name():
 
 
 def test_a_mirror_order_that_is_not_its_own_inverse_is_refused():
-    with pytest.raises(ValueError, match="its own inverse"):
+    with pytest.raises(InputError, match="its own inverse"):
         Categorical("foot", 3, (1, 2, 0))
+
+
+def mirrored(mirror):
+    return Normal("move", (Interval(-1.0, 1.0, 2),), mirror)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: Categorical("foot", 1), "'foot' has 1 choices; .* two at least"),
+        (lambda: Categorical("foot", 2.0), "'foot' has 2.0 choices"),
+        (lambda: Categorical("foot", 3, (0, 1)), r"mirror_order = \(0, 1\)"),
+        (lambda: Interval(1.0, -1.0), "is no interval: give finite numbers, low below high"),
+        (lambda: Interval(0.0, np.inf), "is no interval"),
+        (lambda: Interval(0.0, 1.0, 0), "scales 0 values"),
+        (lambda: Ball(-1.0), "is no ball: give a finite radius above 0"),
+        (lambda: Ball(1.0, 2.5), "scales 2.5 values"),
+        (lambda: Normal("move", Ball(1.0)), r"give a tuple of scales"),
+        (lambda: Normal("move", ()), r"'move' has the scales \(\)"),
+        (
+            lambda: mirrored(Mirror.of_signs([1])),
+            "'move' has 2 values, but its mirror is one of 1",
+        ),
+        (lambda: mirrored((1, -1)), r"the mirror \(1, -1\); give a Mirror"),
+        (lambda: Mirror((0, 0), (1, 1)), "names each value once"),
+        (lambda: Mirror((0, 1), (1,)), "a sign for each"),
+        (lambda: Mirror((1, 2, 0), (1, 1, 1)), "not its own inverse"),
+        (lambda: Mirror((1, 0), (1, -1)), "not its own inverse"),
+        (lambda: Mirror((0,), (2,)), "signs are 1 or -1"),
+        (lambda: Part("map", 9), r"'map' has the shape 9; give \(n,\)"),
+        (lambda: Part("map", (1, 2, 3)), r"shape \(1, 2, 3\)"),
+        (lambda: Part("map", (0,)), r"shape \(0,\)"),
+        (lambda: Part("map", (2, 2), mean=(0.0, 1.0)), "has 4 values, but its mean is"),
+        (lambda: Part("map", (2,), deviation=np.nan), "one finite number, or a tuple of 2"),
+        (lambda: Part("map", (2,), deviation=(1.0, 0.0)), "must be above 0"),
+        (lambda: Part("map", (3, 3), mirror=Mirror.of_map(3, 4)), "9 values, .* one of 12"),
+        (lambda: Signature(Part("map", (1,)), (CHOICE,)), r"parts are a Part; .* as in \(part,\)"),
+        (lambda: Signature((Part("map", (1,)),), ()), r"heads are a tuple; .* as in \(head,\)"),
+    ],
+)
+def test_what_no_policy_could_have_is_refused_by_one_sentence(make, sentence):
+    with pytest.raises(InputError, match=sentence) as refusal:
+        make()
+    assert "\n" not in str(refusal.value)
+
+
+def test_an_observation_that_lacks_a_part_is_refused():
+    signature = Signature((Part("map", (2, 2)), Part("speed", (1,))), (CHOICE,))
+    for lacking in ({"map": np.zeros((3, 2, 2))}, np.zeros((3, 5))):
+        with pytest.raises(InputError, match="lacks the part speed; give arrays of map, speed"):
+            signature.pack(lacking)
 
 
 def test_parts_are_packed_in_order_and_the_critics_own_are_kept_from_the_actor():
@@ -137,7 +189,7 @@ def test_parts_are_packed_in_order_and_the_critics_own_are_kept_from_the_actor()
 
 def test_names_are_needed_once_each():
     part = Part("twice", (1,))
-    with pytest.raises(ValueError, match="each one once"):
+    with pytest.raises(InputError, match="each one once"):
         Signature((part, part), (CHOICE,))
-    with pytest.raises(ValueError, match="critic's alone"):
+    with pytest.raises(InputError, match="critic_only"):
         Signature((Part("all", (1,), critic_only=True),), (CHOICE,))

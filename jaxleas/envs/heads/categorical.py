@@ -9,6 +9,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int, Key
 
+from jaxleas.types.errors import InputError
 from jaxleas.types.onnx_nodes import OnnxNodes
 
 
@@ -39,9 +40,21 @@ class Categorical:
     mirror_order: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
-        order = self.mirror_order
-        if order is not None and [order[place] for place in order] != list(range(self.choices)):
-            raise ValueError(f"mirror_order = {order} must be its own inverse on {self.choices}")
+        order, count = self.mirror_order, self.choices
+        if not isinstance(count, int | np.integer) or count < 2:
+            raise InputError(
+                f"the head {self.name!r} has {count} choices; a Categorical needs a whole number of"
+                " them, two at least"
+            )
+        if order is None:
+            return
+        in_place = sorted(order) == list(range(count))
+        if not in_place or [order[place] for place in order] != list(range(count)):
+            raise InputError(
+                f"the head {self.name!r} has mirror_order = {order}, which must be its own inverse"
+                f" on {count} choices: for each choice, the one that it becomes when left and right"
+                " are swapped"
+            )
 
     @property
     def size(self) -> int:

@@ -10,7 +10,8 @@ from jax import Array
 from jaxtyping import Float, Key
 
 from jaxleas.envs.heads.scales import Scale
-from jaxleas.envs.mirror import Mirror
+from jaxleas.envs.mirror import Mirror, require_mirror
+from jaxleas.types.errors import InputError
 from jaxleas.types.onnx_nodes import OnnxNodes
 
 LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
@@ -44,6 +45,15 @@ class Normal:
     name: str
     scales: tuple[Scale, ...]
     mirror: Mirror | None = None
+
+    def __post_init__(self) -> None:
+        scales = self.scales
+        if not isinstance(scales, tuple) or not scales or not all(map(callable, scales)):
+            raise InputError(
+                f"the head {self.name!r} has the scales {scales!r}; give a tuple of scales, such as"
+                " (Interval(-1.0, 1.0),)"
+            )
+        require_mirror(self.mirror, self.size, f"the head {self.name!r}")
 
     @property
     def symmetric(self) -> bool:

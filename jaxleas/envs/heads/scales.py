@@ -1,5 +1,6 @@
 """From a normal head's numbers in [-1, 1] to physical units, in JAX and as ONNX nodes."""
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -8,6 +9,7 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.geometry.rotations import bound_norm
+from jaxleas.types.errors import InputError
 from jaxleas.types.onnx_nodes import OnnxNodes
 
 
@@ -46,6 +48,12 @@ class Interval:
     high: float
     size: int = 1
 
+    def __post_init__(self) -> None:
+        width = self.high - self.low
+        if not (math.isfinite(width) and width > 0.0):
+            raise InputError(f"{self} is no interval: give finite numbers, low below high")
+        _require_size(self)
+
     def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
         """Return low + (action + 1) / 2 (high - low)."""
         scaled = jnp.clip(action, -1.0, 1.0) * (0.5 * (self.high - self.low))
@@ -73,6 +81,11 @@ class Ball:
     radius: float
     size: int = 3
 
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.radius) and self.radius > 0.0):
+            raise InputError(f"{self} is no ball: give a finite radius above 0")
+        _require_size(self)
+
     def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
         """Return radius * action, shortened where the action is longer than 1."""
         return bound_norm(jnp.clip(action, -1.0, 1.0), 1.0) * self.radius
@@ -82,3 +95,8 @@ class Ball:
         norm = nodes.add("ReduceL2", action, axes=[1], keepdims=1)
         bounded = nodes.add("Div", action, nodes.add("Max", norm, nodes.constant(1.0)))
         return nodes.add("Mul", bounded, nodes.constant(self.radius))
+
+
+def _require_size(scale: Scale) -> None:
+    if not isinstance(scale.size, int) or scale.size < 1:
+        raise InputError(f"{scale} scales {scale.size} values; give a whole number, 1 at least")
