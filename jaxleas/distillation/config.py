@@ -135,6 +135,11 @@ class DistillationConfig(Strict):
 
     @model_validator(mode="after")
     def _one_planner_in_the_loop(self) -> Self:
+        if self.mode == "faithful" and self.run.ppo.failure_starts:
+            raise ValueError(
+                "run.ppo.failure_starts is for mode surrogate: in mode faithful every wave has"
+                " starts of its own, so leave it out"
+            )
         if self.mode == "faithful" and self.collect.parameters:
             raise ValueError(
                 "collect.parameters are of a planner that labels, and in mode faithful nothing is"

@@ -5,7 +5,7 @@ from typing import Any
 
 import jax
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.envs.environment import Starts
 from jaxleas.types.errors import InputError
@@ -53,6 +53,26 @@ class HostPool:
         """Return indices of candidates, drawn uniformly."""
         return generator.integers(len(self), size=shape)
 
+    def draw_failing_picks(
+        self,
+        generator: np.random.Generator,
+        shape: tuple[int, ...],
+        rate: Float[np.ndarray, " groups"],
+        share: float,
+    ) -> Int[np.ndarray, "*shape"]:
+        """Return indices of candidates, more often of groups that fail often.
+
+        Args:
+            generator: generator of random numbers.
+            shape: shape of the indices.
+            rate: share of each group's episodes that failed, above 0.
+            share: share of the indices that is drawn in proportion to `rate`; the rest is drawn
+                evenly.
+        """
+        failing = rate[self.group].astype(float)
+        chance = (1.0 - share) / len(self) + share * failing / failing.sum()
+        return generator.choice(len(self), size=shape, p=chance / chance.sum())
+
     def take(self, pick: Int[np.ndarray, " count"]) -> tuple[Any, Int[np.ndarray, " count"]]:
         """Return the states and groups of some candidates."""
         return jax.tree.map(lambda leaf: leaf[pick], (self.state, self.group))
@@ -77,3 +97,8 @@ class HostPool:
             return new
 
         return jax.tree.map(renewed, state, self.state)
+
+
+def as_numpy(state: Any) -> Any:
+    """Return a state in NumPy's arrays: what computed it may have used JAX."""
+    return jax.tree.map(np.asarray, state)

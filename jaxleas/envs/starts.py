@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
-from jaxtyping import Bool, Int, Key
+from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.envs.environment import Starts, select
 
@@ -32,8 +32,9 @@ def pool_of(starts: Starts) -> StartPool:
     """Return starts as a pool; invalid ones are kept (shapes are fixed) but never used."""
     count = len(starts.valid)
     return StartPool(
-        state=starts.state,
-        group=starts.group,
+        # A constant of the task may be NumPy's, which no traced index can pick from.
+        state=jax.tree.map(jnp.asarray, starts.state),
+        group=jnp.asarray(starts.group),
         order=jnp.nonzero(starts.valid, size=count, fill_value=0)[0].astype(jnp.int32),
         valid_count=jnp.sum(starts.valid, dtype=jnp.int32),
     )
@@ -53,6 +54,31 @@ def draw_picks(
     count = jnp.maximum(pool.valid_count, 1)
     place = jax.random.uniform(key, shape) * count.astype(jnp.float32)
     return pool.order[jnp.minimum(place.astype(jnp.int32), count - 1)]
+
+
+def draw_failing_picks(
+    pool: StartPool,
+    key: Key[Array, ""],
+    shape: tuple[int, ...],
+    rate: Float[Array, " groups"],
+    share: float,
+) -> Int[Array, "*shape"]:
+    """Return indices of valid candidates, more often of groups that fail often.
+
+    Args:
+        pool: candidates.
+        key: random key, consumed here.
+        shape: shape of the indices.
+        rate: share of each group's episodes that failed, above 0.
+        share: share of the indices that is drawn in proportion to `rate`; the rest is drawn evenly.
+    """
+    count = jnp.maximum(pool.valid_count, 1)
+    valid = jnp.arange(len(pool.order)) < count
+    failing = jnp.where(valid, rate[pool.group[pool.order]], 0.0)
+    even = jnp.where(valid, (1.0 - share) / count, 0.0)
+    ends = jnp.cumsum(even + failing * (share / jnp.sum(failing)))
+    place = jnp.searchsorted(ends, jax.random.uniform(key, shape) * ends[-1], side="right")
+    return pool.order[jnp.minimum(place, count - 1)]
 
 
 def restart_where(

@@ -87,6 +87,9 @@ class PpoConfig(Strict):
     """Decay per update of the exponential average of the policy that is judged and exported."""
     candidates: Count = 1024
     """Fresh starts drawn before each update."""
+    failure_starts: Fraction = 0.0
+    """Share of the fresh starts that are taken from the candidates in proportion to how often
+    episodes of their group failed lately; the others are taken evenly."""
 
     @property
     def batch(self) -> int:

@@ -91,11 +91,11 @@ class HostTrainStep:
         numbers = self._constants if params is None else params
         key, walk_key, learn_key = jax.random.split(state.key, 3)
         state, batch, walked = self._walk(world, state, numbers, walk_key)
-        episode, observation = state.episode, state.observation
-        learner = state.replace(episode=(), observation=())  # type: ignore[attr-defined]
+        observation = state.observation
+        kept = {"episode": state.episode, "observation": observation, "failures": state.failures}
+        learner = state.replace(episode=(), observation=(), failures=None)  # type: ignore[attr-defined]
         learner, learned = self._update(learner, batch, observation, learn_key, numbers)
-        state = learner.replace(episode=episode, observation=observation, key=key)
-        return state, walked | learned
+        return learner.replace(**kept, key=key), walked | learned
 
 
 def make_update(
@@ -166,4 +166,4 @@ def _all_finite(tree: Any) -> Array:
         for leaf in jax.tree.leaves(tree)
         if jnp.issubdtype(leaf.dtype, jnp.inexact)
     ]
-    return jnp.all(jnp.stack(leaves))
+    return jnp.all(jnp.stack(leaves)) if leaves else jnp.bool_(True)

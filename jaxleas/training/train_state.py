@@ -10,11 +10,12 @@ from jax import Array
 from jaxtyping import Float, Int, Key
 
 from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool
+from jaxleas.envs.host_starts import HostPool, as_numpy
 from jaxleas.envs.signature import Signature
 from jaxleas.envs.starts import pool_of, take
 from jaxleas.training.adam import BETA_1, BETA_2, EPSILON
 from jaxleas.training.config import PpoConfig, RunConfig
+from jaxleas.training.failures import Failures, no_failures
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, initial_normaliser
 from jaxleas.training.ppo_params import PpoParams
@@ -34,6 +35,7 @@ class TrainState:
         observation: observation of every robot, one vector each.
         key: randomness of everything still to come.
         update: number of policy updates done.
+        failures: where episodes failed lately; None where starts ignore it (`ppo.failure_starts`).
     """
 
     params: Any
@@ -44,6 +46,7 @@ class TrainState:
     observation: Float[Array, "robots size"]
     key: Key[Array, ""]
     update: Int[Array, ""]
+    failures: Failures | None = None
 
 
 @struct.dataclass
@@ -157,11 +160,13 @@ def initial_state(
     keys = FirstKeys.of(config.seed if seed is None else seed)
     count = config.ppo.environments
     starts = task.draw_starts(world, keys.pool, max(count, config.ppo.candidates))
-    episode, _ = take(pool_of(starts), keys.take, count)
+    episode, group = take(pool_of(starts), keys.take, count)
     observation = task.signature.pack(task.look(world, episode))
     # Episodes that began at different times end at different times: no wave of resets.
     episode = task.stagger(episode, keys.stagger)
-    return _state(config, task.signature, networks, keys, episode, observation)
+    state = _state(config, task.signature, networks, keys, episode, observation)
+    failures = no_failures(config.ppo, group, len(task.groups))
+    return state.replace(failures=failures)  # type: ignore[attr-defined]
 
 
 def initial_host_state(
@@ -174,9 +179,12 @@ def initial_host_state(
     count = config.ppo.environments
     starts = task.draw_starts(world, generator_of(keys.pool), max(count, config.ppo.candidates))
     pool = HostPool.of(starts)
-    episode, _ = pool.take(pool.draw_picks(generator_of(keys.take), (count,)))
-    episode = task.stagger(episode, generator_of(keys.stagger))
-    return _state(config, task.signature, networks, keys, episode, look(task, world, episode))
+    episode, group = pool.take(pool.draw_picks(generator_of(keys.take), (count,)))
+    episode = as_numpy(task.stagger(episode, generator_of(keys.stagger)))
+    seen = look(task, world, episode)
+    state = _state(config, task.signature, networks, keys, episode, seen)
+    failures = no_failures(config.ppo, group, len(task.groups))
+    return state.replace(failures=failures)  # type: ignore[attr-defined]
 
 
 def _state(

@@ -7,8 +7,9 @@ import jax.numpy as jnp
 from jax import Array
 
 from jaxleas.envs.environment import Task
-from jaxleas.envs.starts import draw_picks, pool_of, restart_where
+from jaxleas.envs.starts import draw_failing_picks, draw_picks, pool_of, restart_where
 from jaxleas.training.config import RunConfig
+from jaxleas.training.failures import counted, start_metrics
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import normalise
@@ -33,7 +34,11 @@ def make_walk(config: RunConfig, task: Task, networks: ActorCritic) -> Callable:
         weights = task.weights(numbers.task, progress)
         pool = pool_of(task.draw_starts(world, pool_key, ppo.candidates))
         # All random numbers are drawn in bulk: one key per batch, not one per step or robot.
-        picks = draw_picks(pool, restart_key, shape)
+        failures = state.failures
+        if failures is None:
+            picks = draw_picks(pool, restart_key, shape)
+        else:
+            picks = draw_failing_picks(pool, restart_key, shape, failures.rate, ppo.failure_starts)
         noise = signature.draw_noise(noise_key, shape)
 
         def advance(carry, inputs):
@@ -49,7 +54,7 @@ def make_walk(config: RunConfig, task: Task, networks: ActorCritic) -> Callable:
                 observation=observation,
                 raw_action=raw_action,
                 distributions=distributions,
-                reward=result.reward,
+                reward=result.reward.astype(jnp.float32),
                 terminated=result.terminated.astype(jnp.float32),
                 truncated=result.truncated.astype(jnp.float32),
             )
@@ -61,7 +66,26 @@ def make_walk(config: RunConfig, task: Task, networks: ActorCritic) -> Callable:
         )
         valid_starts = pool.valid_count / ppo.candidates
         metrics = walk_metrics(ppo, batch, reached, measures, valid_starts)
-        state = state.replace(episode=episode, observation=observation)  # type: ignore[attr-defined]
+        if failures is not None:
+            terminated = batch.terminated > 0.0
+            over, fresh = terminated | (batch.truncated > 0.0), pool.group[picks]
+            began, group = _groups(failures.group, fresh, over)
+            failures = counted(failures, began, over, terminated, group)
+            metrics |= start_metrics(task.groups, failures, fresh, over)
+        state = state.replace(  # type: ignore[attr-defined]
+            episode=episode, observation=observation, failures=failures
+        )
         return state, batch, metrics
 
     return walk
+
+
+def _groups(group: Array, fresh: Array, over: Array) -> tuple[Array, Array]:
+    """Return the group in which the episode of each step began, and of those under way after."""
+
+    def step(group: Array, inputs: tuple[Array, Array]) -> tuple[Array, Array]:
+        now, ended = inputs
+        return jnp.where(ended, now, group), group
+
+    group, began = jax.lax.scan(step, group, (fresh.astype(group.dtype), over))
+    return began, group

@@ -10,8 +10,9 @@ import numpy as np
 from jax import Array
 
 from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool
+from jaxleas.envs.host_starts import HostPool, as_numpy
 from jaxleas.training.config import RunConfig
+from jaxleas.training.failures import counted_on_host, start_metrics
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import normalise
@@ -67,7 +68,14 @@ class HostWalker:
         noise = jax.tree.map(np.asarray, self._draw(noise_key))
         disturbances = task.draw_disturbances(generator, self._shape)
         pool = HostPool.of(task.draw_starts(world, generator, ppo.candidates))
-        picks = pool.draw_picks(generator, self._shape)
+        failures = state.failures
+        picks = (
+            pool.draw_picks(generator, self._shape)
+            if failures is None
+            else pool.draw_failing_picks(
+                generator, self._shape, np.asarray(failures.rate), ppo.failure_starts
+            )
+        )
         weights = task.weights(jax.tree.map(float, numbers.task), int(state.update) / ppo.updates)
         policy, normaliser = state.params.policy, state.normaliser
         episode, observation = state.episode, state.observation
@@ -77,6 +85,7 @@ class HostWalker:
                 self._act(normaliser, policy, observation, _at(noise, step))
             )
             after, result = task.advance(world, weights, episode, action, _at(disturbances, step))
+            after = as_numpy(after)
             terminated, truncated = np.asarray(result.terminated), np.asarray(result.truncated)
             episode = pool.restart_where(terminated | truncated, after, picks[step])
             record: Any = {
@@ -92,13 +101,31 @@ class HostWalker:
         walked, reached, measures = jax.tree.map(lambda *each: np.stack(each), *records)
         batch = Experience(**walked)
         metrics = walk_metrics(ppo, batch, reached, measures, len(pool) / pool.drawn)
-        state = state.replace(episode=episode, observation=observation)  # type: ignore[attr-defined]
+        if failures is not None:
+            terminated = walked["terminated"] > 0.0
+            over = terminated | (walked["truncated"] > 0.0)
+            fresh = pool.group[picks]
+            began, group = _groups(np.asarray(failures.group), fresh, over)
+            failures = counted_on_host(failures, began, over, terminated, group)
+            metrics |= start_metrics(task.groups, failures, fresh, over)
+        state = state.replace(  # type: ignore[attr-defined]
+            episode=episode, observation=observation, failures=failures
+        )
         return state, batch, metrics
 
 
 def look(task: Task, world: Any, episode: Any) -> np.ndarray:
     """Return the observation on the host, as the one float32 vector that networks take."""
     return np.asarray(task.signature.pack(task.look(world, episode)), np.float32)
+
+
+def _groups(group: Any, fresh: Any, over: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the group in which the episode of each step began, and of those under way after."""
+    began = []
+    for now, ended in zip(fresh, over, strict=True):
+        began.append(group)
+        group = np.where(ended, now, group).astype(np.int32)
+    return np.stack(began), group
 
 
 def _at(tree: Any, step: int) -> Any:
