@@ -41,7 +41,9 @@ def require_plain_graph(model: "onnx.ModelProto", path: object) -> None:
     tensors = list(graph.initializer)
     for node in graph.node:
         if node.op_type not in OPERATORS:
-            raise InputError(f"{path} uses the operator {node.op_type!a}, which no policy needs")
+            raise InputError(
+                f"{path} uses the operator {node.op_type!a}, which no steering policy needs"
+            )
         for attribute in node.attribute:
             if attribute.HasField("g") or attribute.graphs or attribute.HasField("sparse_tensor"):
                 raise InputError(f"{path} has a graph or sparse weights inside a node")
