@@ -77,6 +77,7 @@ def _open(
     from jaxleas.configuration.loading import to_yaml
     from jaxleas.runs.folder import RunFolder
     from jaxleas.runs.watching import require_watchers
+    from jaxleas.training.rehearsal import rehearse
     from jaxleas.training.run_config import load_run_config, make_task, pinned
 
     if given.resume:
@@ -89,7 +90,9 @@ def _open(
     config = pinned(load_run_config(given.config, overrides, given.allow))
     require_watchers(config.watch)  # before a folder is made
     devices = _devices(given, config)
-    make_task(config, given.allow).require_worlds()  # likewise
+    task = make_task(config, given.allow)
+    task.require_worlds()  # likewise
+    rehearse(config, task)
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
     return config, devices, run

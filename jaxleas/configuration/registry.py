@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from jaxleas.configuration.own_code import describe
 from jaxleas.types.errors import InputError
 
 Item = TypeVar("Item")
@@ -68,9 +69,11 @@ class Registry(Generic[Item]):
         if not is_own(name):
             raise InputError(f"there is no {self.kind} {name!r}{self.hint(name)}")
         if name not in allow:
+            close = difflib.get_close_matches(name, allow, n=1)
+            meant = f"; you allowed {close[0]}: is one of the two misspelt?" if close else ""
             raise InputError(
                 f"the {self.kind} {name} is code: if you trust it, give --allow {name} on the"
-                " command line"
+                f" command line{meant}"
             )
         if (here := str(Path.cwd())) not in sys.path:
             sys.path.append(here)  # where the user's own modules are
@@ -104,9 +107,21 @@ def load(target: str, kind: str) -> Any:
     """
     module, _, name = target.partition(":")
     try:
-        return getattr(import_module(module), name)
-    except (ImportError, AttributeError, ValueError) as error:
+        found = import_module(module)
+    except (ImportError, ValueError) as error:
         raise InputError(
             f"the {kind} {target} cannot be loaded: {error}; give MODULE:CLASS of a module in this"
             " folder or one that is installed"
         ) from error
+    except Exception as error:
+        raise InputError(
+            f"the {kind} {target} cannot be loaded: its module raises {describe(error)}"
+        ) from error
+    if not hasattr(found, name):
+        close = difflib.get_close_matches(name, vars(found), n=1)
+        meant = f"; perhaps you meant {module}:{close[0]}" if close else ""
+        raise InputError(
+            f"the {kind} {target} cannot be loaded: module {module!r} has no attribute {name!r}"
+            f"{meant}; give MODULE:CLASS of a module in this folder or one that is installed"
+        )
+    return getattr(found, name)

@@ -15,7 +15,7 @@ from jaxleas.evaluation.suites import SUITED_TASKS, make_suite
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
 from jaxleas.training.config import RunConfig
 from jaxleas.training.ppo_params import swept_fields
-from jaxleas.training.run_config import load_run_config, pinned
+from jaxleas.training.run_config import load_run_config, pinned, require_signature
 from jaxleas.types.errors import InputError
 
 # Sections that define the measure must not be searched: trials would not be comparable.
@@ -94,6 +94,7 @@ def check_sweep(
         InputError: the space names a field that cannot be searched, or an objective cannot be
             measured.
     """
+    require_signature(base)
     whole = frozenset(
         name
         for name, dimension in config.space.items()

@@ -60,11 +60,14 @@ def population(population: Path, *, out: Path, allow: tuple[str, ...] = ()) -> N
     from jaxleas.sweeps.population_folder import hold_population
     from jaxleas.sweeps.population_loop import train_population
     from jaxleas.sweeps.population_table import population_table
+    from jaxleas.training.rehearsal import rehearse
+    from jaxleas.training.run_config import make_task
     from jaxleas.xla.compilation import keep_compiled_programs
 
     members = open_population(population, allow)
     use_all_cores()
     keep_compiled_programs()
+    rehearse(members.configs[0], make_task(members.configs[0], allow))
     with hold_population(Path(out), members) as runs:
         results = train_population(members, runs, Path(out), ["jaxleas", *sys.argv[1:]])
     print(population_table(members, results))

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from jaxleas.files import InUseError, parse_json, read_typed, typed, write_json
-from jaxleas.types.errors import JaxleasError
+from jaxleas.types.errors import JaxleasError, OwnCodeError
 
 LIFELINE = "--lifeline"
 ALLOW = "--allow"
@@ -167,7 +167,7 @@ def _train_alone(run: Path, config: Any, allow: Sequence[str]) -> list[tuple[str
             train(config, folder, on_examined=look, allow=allow)
     except _PrunedError:
         return [("pruned", "")]
-    except NonFiniteError as error:
+    except (NonFiniteError, OwnCodeError) as error:  # it would fail again
         return [("failed", str(error))]
     return [("done", "")]
 
@@ -178,8 +178,14 @@ def _train_together(
     """Return states and reasons of trainings in one program."""
     from jaxleas.sweeps.population_config import Members
     from jaxleas.sweeps.population_loop import train_population
+    from jaxleas.training.rehearsal import rehearse
+    from jaxleas.training.run_config import make_task
 
     members = Members(tuple(configs), tuple({} for _ in configs), allow=tuple(allow))
+    try:
+        rehearse(configs[0], make_task(configs[0], allow))
+    except OwnCodeError as error:
+        return [("failed", str(error)) for _ in configs]
     results = train_population(members, runs, home, sys.argv)
     return [("failed" if each.failure else "done", each.failure) for each in results]
 

@@ -136,5 +136,6 @@ def _fractions(
     for cell in examination.cells:
         inside = group == groups.index(cell)
         # A cell without starts has no success: NaN is logged as null.
-        found[f"{REACHED}/{cell}"] = (reached & inside).sum() / inside.sum()
+        with np.errstate(invalid="ignore"):
+            found[f"{REACHED}/{cell}"] = (reached & inside).sum() / inside.sum()
     return found

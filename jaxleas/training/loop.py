@@ -2,11 +2,14 @@
 
 import logging
 from collections.abc import Callable, Collection, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import jax
 import numpy as np
 
+from jaxleas.configuration.own_code import methods_of
+from jaxleas.configuration.registry import is_own
 from jaxleas.envs.environment import Task
 from jaxleas.runs.background import Background
 from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
@@ -19,6 +22,7 @@ from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import Policy, read_policy, write_policy
 from jaxleas.training.processes import from_first
+from jaxleas.training.rehearsal import rehearse
 from jaxleas.training.run_config import make_task
 from jaxleas.training.stretches import (
     InterruptedRunError,
@@ -70,10 +74,25 @@ def train(
     Raises:
         NonFiniteError: a number became infinite or NaN.
         InterruptedRunError: a signal asked the run to stop.
-        InputError: a watcher is not installed or not set up.
+        InputError: a watcher is not installed or not set up; or a user's own task does not keep
+            the protocol, or raises an exception.
     """
     require_watchers(config.watch)  # before minutes go into compiling
-    trainer = Trainer(config, task or make_task(config, allow), devices or one_device())
+    task = task or make_task(config, allow)
+    rehearse(config, task)
+    with (
+        methods_of(task, f"the task {config.env.task}")
+        if is_own(config.env.task)
+        else nullcontext()
+    ):
+        _train(Trainer(config, task, devices or one_device()), run, learned, on_examined)
+    return read_policy(run.path / POLICY_FILE, of=config.env)
+
+
+def _train(
+    trainer: Trainer, run: RunFolder, learned: Learned | None, on_examined: Callable[[], None]
+) -> None:
+    config = trainer.config
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
@@ -95,7 +114,6 @@ def train(
             trainer, run, checkpoints, log, progress, background, best, on_examined
         )
         _Session(trainer, interruption, recorder).run(state)
-    return read_policy(run.path / POLICY_FILE, of=config.env)
 
 
 def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> None:
@@ -219,11 +237,25 @@ class _Session:
                     if self.recorder is None
                     else self.recorder.run.checkpoints
                 )
+                # The parameters that walked were finite: what was walked is the task's.
+                hint = (
+                    "the task gave them: look at its advance and look"
+                    if {"observation", "reward"} & set(where.split(", "))
+                    else "a smaller learning rate or max_gradient_norm may help"
+                )
                 raise NonFiniteError(
                     f"update {update} (step {step}) made non-finite numbers in: {where}; the last"
-                    f" good state is kept in {folder}: a smaller learning rate or"
-                    " max_gradient_norm may help"
+                    f" good state is kept in {folder}: {hint}"
                 )
+            self._require_starts(update, metrics)
+
+    @staticmethod
+    def _require_starts(update: int, metrics: Metrics) -> None:
+        if metrics["walk/valid_starts"] == 0:
+            raise InputError(
+                f"update {update}: none of the starts that the task drew is valid, so no episode"
+                " can begin: more ppo.candidates may help"
+            )
 
     def _examine(self) -> dict[str, float]:
         state = self.state

@@ -1,10 +1,13 @@
 """Reading the configuration of a run: its task determines what its sections hold."""
 
 from collections.abc import Collection, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration.loading import Layers, layers_of, load_layers, validate
+from jaxleas.configuration.own_code import own_code
+from jaxleas.configuration.registry import is_own
 from jaxleas.envs.environment import Task
 from jaxleas.envs.registry import DEFAULT_TASK, TASKS
 from jaxleas.training.config import RunConfig
@@ -63,7 +66,19 @@ def make_task(config: AnyRun, allow: Collection[str] = ()) -> Task:
     Raises:
         InputError: there is no such task, its code may not be run, or it cannot be made.
     """
-    return TASKS.find(config.env.task, allow).make(config.env, config.terrain, allow)
+    found = TASKS.find(config.env.task, allow)
+    with own_code(f"the task {config.env.task}") if is_own(config.env.task) else nullcontext():
+        return found.make(config.env, config.terrain, allow)
+
+
+def require_signature(config: AnyRun) -> None:
+    """Refuse a user's own task that has no signature; nothing of JAX is touched.
+
+    Raises:
+        InputError: the signature cannot be made.
+    """
+    with own_code(f"the task {config.env.task}: signature"):
+        config.env.signature()
 
 
 def pinned(config: AnyRun) -> AnyRun:

@@ -7,3 +7,7 @@ class JaxleasError(Exception):
 
 class InputError(JaxleasError):
     """An unusable input: the message says what is wrong, where, and what would be right."""
+
+
+class OwnCodeError(InputError):
+    """The user's own code raised an exception, or does not keep the protocol of what it is."""
