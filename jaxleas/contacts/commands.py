@@ -123,7 +123,7 @@ def contacts(
 
     Args:
         guide: the guide path, .npz.
-        scene: its terrain as polygons: .json scene, or .stl or .obj mesh in metres, z up.
+        scene: its terrain as polygons: .json scene, or a mesh in metres, z up.
         planner: planner to use; those that need a contact problem get one made of the guide.
         out: the plan, .json.
         problem: file to write the contact problem to, too, .json.

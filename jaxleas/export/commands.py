@@ -25,7 +25,7 @@ def export(
         run: run folder; with --page an .onnx file will do, too, which is not exported again.
         out: folder for policy.onnx, policy.stablehlo and export.json; by default the run folder.
         page: folder for a page on which the policy walks, static files for any web host.
-        terrain: terrain of the page: .npz height map, .json scene, .stl or .obj mesh.
+        terrain: terrain of the page: height map, scene or mesh; docs/files.md lists all kinds.
         start: x, y [m] and heading [deg] on the page; by default a place with room around it.
         runtime: folder dist of the npm package onnxruntime-web; by default npm fetches it once.
         allow: your own code that the run's configuration names, as MODULE:CLASS.

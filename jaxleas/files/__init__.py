@@ -15,9 +15,11 @@ from jaxleas.files.lock import FolderLock, InUseError
 from jaxleas.files.lock_holder import is_held
 from jaxleas.files.reading import (
     is_file,
+    read_array,
     read_bytes,
     read_json,
     read_npz,
+    require_file,
     require_version,
     require_version_array,
 )
@@ -31,12 +33,14 @@ __all__ = [
     "is_file",
     "is_held",
     "parse_json",
+    "read_array",
     "read_bytes",
     "read_json",
     "read_npz",
     "read_typed",
     "refuse_misspelt_keys",
     "require_digest",
+    "require_file",
     "require_version",
     "require_version_array",
     "sweep_temporaries",

@@ -39,7 +39,7 @@ def rollout(
 
     Args:
         policy: a run folder, a policy.npz, or an .onnx.
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         queries: .json list of {position, yaw, velocity, goal}.
         out: the guide paths, .npz.
         steps: maximum number of configurations after the first one of a path.

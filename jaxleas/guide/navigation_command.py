@@ -39,7 +39,7 @@ def navigate(
     Args:
         from_: start as x,y or x,y,yaw [m, rad]; without yaw the robot faces the goal if it can.
         to: goal as x,y [m].
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
             MODULE:CLASS of your own.
         planner: rrt or prm search for waypoints if the direct walk to the goal fails; none = the
@@ -81,7 +81,7 @@ def navigate(
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
     places.require_valid("--to", goal, None)
-    scene = scene_of(terrain, reading.up, reading.scale)
+    scene = scene_of(terrain, reading)
     if scene is not None:
         require_exact_start(places, scene, motion)
     navigator = make_navigator(places, method, steering, planner, scene)

@@ -40,7 +40,7 @@ def label(
 
     Args:
         guides: guide path files, .npz.
-        scene: scene that they cross, .json; or an .stl or .obj mesh in metres, z up.
+        scene: scene that they cross, .json; or a mesh in metres, z up.
         out: folder of the verdict files; the same command continues where it was interrupted.
         planner: planner that judges.
         robot: robot that walks.

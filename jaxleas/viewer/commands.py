@@ -37,7 +37,7 @@ def view(
     """Show a terrain in the browser; drive policies on it, play back paths and plans.
 
     Args:
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         policies: run folders, policy.npz or .onnx files: one robot each, side by side.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
         goal: first goal of the robots: x, y [m].

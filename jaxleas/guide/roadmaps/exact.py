@@ -10,9 +10,9 @@ from jaxtyping import Bool
 from jaxleas.conditions import exact_collision, exact_strict_reachability
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
-from jaxleas.terrain.mesh_scene import mesh_to_scene
-from jaxleas.terrain.meshes import SUFFIXES, Up
-from jaxleas.terrain.scene import Scene, read_scene
+from jaxleas.terrain.mesh_scene import has_polygons, load_scene
+from jaxleas.terrain.reading import READING, Reading
+from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError, RootMotion
 
 NEAR = 0.1 * np.arange(1, 11)
@@ -49,13 +49,9 @@ class ExactVerdict:
         )
 
 
-def scene_of(terrain: Path, up: Up = "z", scale: float = 1.0) -> Scene | None:
+def scene_of(terrain: Path, reading: Reading = READING) -> Scene | None:
     """Return the polygons of a terrain file; None for a map or an image, which has none."""
-    if terrain.suffix.lower() == ".json":
-        return read_scene(terrain)
-    if terrain.suffix.lower() in SUFFIXES:
-        return mesh_to_scene(terrain, up, scale)
-    return None
+    return load_scene(terrain, reading) if has_polygons(terrain) else None
 
 
 def refusals(
