@@ -12,7 +12,6 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.envs.heads import Head
 from jaxleas.envs.signature import Signature
-from jaxleas.training.adam import descend
 from jaxleas.training.averages import Average
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.devices import AXIS, Devices
@@ -21,7 +20,9 @@ from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, learning_rate
+from jaxleas.xla.adam import descend
 from jaxleas.xla.compute_once import compute_once
+from jaxleas.xla.gather import take_inside
 
 
 def make_learn(
@@ -210,7 +211,7 @@ def take_robots(
         time, count, robots, *rest = leaf.shape
         flat = leaf.reshape(time * count * robots, *rest)
         begin = jnp.arange(time, dtype=jnp.int32)[:, None] * (count * robots)
-        return flat.at[begin + rows].get(mode="promise_in_bounds")
+        return take_inside(flat, begin + rows)
 
     # Observations separately: the first layers' products need them both as they are and transposed.
     seen = compute_once(take, images.observation)
