@@ -134,7 +134,7 @@ def _first_state(
 
     if from_first(look) == "resumed":
         step, state, note = found or (0, like, {"best": -1.0})
-        return step, trainer.place(state), note["best"]
+        return step, trainer.place(state), _best_score(note, step)
     state = trainer.fresh_state()
     if learned is not None:
         state = trainer.place(learned.into(state))
@@ -142,6 +142,16 @@ def _first_state(
     if checkpoints is not None:
         checkpoints.save(0, kept, {"best": -1.0})
     return 0, state, -1.0
+
+
+def _best_score(note: dict, step: int) -> float:
+    """Return the best score so far, as the note of a checkpoint states it."""
+    best = note.get("best")
+    if isinstance(best, bool) or not isinstance(best, int | float):
+        raise InputError(
+            f"the checkpoint of step {step} is not a training's: its note states no number 'best'"
+        )
+    return float(best)
 
 
 def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:
