@@ -14,7 +14,7 @@ from jaxleas.robots.talos import load_talos
 from jaxleas.types.errors import InputError
 
 _ALIKE = 1e-6
-"""Tolerance of the geometry of two legs that are mirror images [m and rad]."""
+"""Tolerance of the numbers of two legs that are mirror images [m, rad and kg]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,10 +82,26 @@ def legs_of(robot: Robot) -> LegModel:
             " that moves joints needs both; scripts/make_robot.py makes them from a URDF"
         )
     left, right = (models[0], models[1]) if len(models) == 2 else (None, None)
-    if left is None or right is None or not _mirror_images(left, right):
+    if left is None or right is None:
         raise InputError(
-            f"robot '{robot.name}' has {len(models)} legs that are not two mirror images in the"
-            " root's plane y = 0, left before right, as this planner needs them"
+            f"robot '{robot.name}' has {len(models)} legs; this planner moves two that are mirror"
+            " images"
+        )
+    one, other = (robot.effectors[index] for index in robot.feet)
+    different = unlike(left.mirrored(), right)
+    different += [
+        what
+        for what, same in (
+            ("half sizes of the soles", one.half_size == other.half_size),
+            ("friction", one.friction == other.friction),
+        )
+        if not same
+    ]
+    if different:
+        raise InputError(
+            f"robot '{robot.name}' has 2 legs that are not two mirror images in the root's plane"
+            f" y = 0, left before right, as this planner needs them: they differ in"
+            f" {', '.join(different)}"
         )
     return LegModel(left, robot.body)
 
@@ -131,13 +147,41 @@ def mass_moment(
     return legs.left.mass_moment(frames, origins)
 
 
-def _mirror_images(left: LimbModel, right: LimbModel) -> bool:
-    one, other = left.chain.mirrored(), right.chain
-    if len(one) != len(other):
-        return False
-    pairs = [
-        (getattr(one, key), getattr(other, key))
-        for key in ("positions", "rotations", "axes", "lower", "upper")
+def unlike(one: LimbModel, other: LimbModel) -> list[str]:
+    """Return what two limbs differ in, as words; nothing for limbs that are the same."""
+    if len(one.chain) != len(other.chain):
+        return ["number of joints"]
+    pairs = {
+        "joint positions": (one.chain.positions, other.chain.positions),
+        "joint rotations": (one.chain.rotations, other.chain.rotations),
+        "joint axes": (one.chain.axes, other.chain.axes),
+        "lower joint limits": (one.chain.lower, other.chain.lower),
+        "upper joint limits": (one.chain.upper, other.chain.upper),
+        "position of the sole": (one.chain.tip.position, other.chain.tip.position),
+        "rotation of the sole": (one.chain.tip.rotation, other.chain.tip.rotation),
+        "reference angles": (one.reference, other.reference),
+        "masses": (one.link_mass, other.link_mass),
+        "centres of mass": (one.link_com, other.link_com),
+        "boxes": (_box_numbers(one), _box_numbers(other)),
+        "capsules": (_capsule_numbers(one), _capsule_numbers(other)),
+        "normals of the reach of the centre of mass": (
+            one.com_reach.normals,
+            other.com_reach.normals,
+        ),
+        "reach of the centre of mass": (one.com_reach.offsets, other.com_reach.offsets),
+    }
+    return [
+        what
+        for what, (a, b) in pairs.items()
+        if a.shape != b.shape or np.abs(a - b).max(initial=0.0) > _ALIKE
     ]
-    pairs += [(one.tip.position, other.tip.position), (one.tip.rotation, other.tip.rotation)]
-    return all(np.abs(a - b).max() <= _ALIKE for a, b in pairs)
+
+
+def _box_numbers(limb: LimbModel) -> np.ndarray:
+    rows = [(each.link, *each.box.low, *each.box.high) for each in limb.boxes]
+    return np.array(rows, dtype=np.float64)
+
+
+def _capsule_numbers(limb: LimbModel) -> np.ndarray:
+    rows = [(each.link, *each.start, *each.end, each.radius) for each in limb.capsules]
+    return np.array(rows, dtype=np.float64)

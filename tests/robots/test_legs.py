@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 from urdfs import TALOS, published
 
-from jaxleas.geometry import Polytope
+from jaxleas.contacts.posture_model import about
+from jaxleas.geometry import Box, Polytope
 from jaxleas.robots import load_talos, read_robot, write_robot
 from jaxleas.robots.legs import leg_angles, leg_posture, legs_of, load_talos_legs, mass_moment
 from jaxleas.robots.spherical_leg import SphericalLeg
 from jaxleas.types import InputError
+from jaxleas.types.poses import Pose
 
 
 @pytest.fixture
@@ -116,8 +118,81 @@ def test_legs_that_are_no_mirror_images_are_refused(legs):
         legs_of(crossed)
     with pytest.raises(InputError, match=r"no 'body', or a leg of it no 'model'"):
         legs_of(replace(talos, body=None))
-    with pytest.raises(InputError, match="1 legs that are not"):
+    with pytest.raises(InputError, match="has 1 legs; this planner moves two"):
         legs_of(replace(talos, limbs=(left,)))
+
+
+def changed_chain(model, **changes):
+    return replace(model, chain=replace(model.chain, **changes))
+
+
+def with_first(sequence, **changes):
+    first, *rest = sequence
+    return (replace(first, **changes), *rest)
+
+
+def turned_tip(model):
+    tip = model.chain.tip
+    return Pose.from_matrix(tip.position, about("z", 0.1) @ tip.rotation)
+
+
+MODELS_THAT_DIFFER = {
+    "number of joints": lambda m: replace(
+        m,
+        chain=replace(
+            m.chain,
+            **{key: getattr(m.chain, key)[:5] for key in ("names", "positions", "rotations")},
+            **{key: getattr(m.chain, key)[:5] for key in ("axes", "lower", "upper")},
+        ),
+        **{key: getattr(m, key)[:5] for key in ("reference", "link_mass", "link_com")},
+        boxes=(),
+        capsules=(),
+        starts=None,
+    ),
+    "joint positions": lambda m: changed_chain(m, positions=m.chain.positions + 0.01),
+    "joint rotations": lambda m: changed_chain(m, rotations=about("x", 0.1) @ m.chain.rotations),
+    "joint axes": lambda m: changed_chain(m, axes=-m.chain.axes),
+    "lower joint limits": lambda m: changed_chain(m, lower=m.chain.lower - 0.1),
+    "upper joint limits": lambda m: changed_chain(m, upper=m.chain.upper + 0.1),
+    "position of the sole": lambda m: changed_chain(
+        m, tip=Pose(m.chain.tip.position - [0.0, 0.0, 0.02], m.chain.tip.quaternion)
+    ),
+    "rotation of the sole": lambda m: changed_chain(m, tip=turned_tip(m)),
+    "reference angles": lambda m: replace(m, reference=m.reference + 0.05),
+    "masses": lambda m: replace(m, link_mass=2.0 * m.link_mass),
+    "centres of mass": lambda m: replace(m, link_com=m.link_com + 0.02),
+    "boxes": lambda m: replace(
+        m, boxes=with_first(m.boxes, box=Box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)))
+    ),
+    "capsules": lambda m: replace(m, capsules=with_first(m.capsules, radius=0.2)),
+    "reach of the centre of mass": lambda m: replace(
+        m, com_reach=Polytope(m.com_reach.normals, m.com_reach.offsets - 0.05)
+    ),
+}
+
+
+@pytest.mark.parametrize("field", MODELS_THAT_DIFFER)
+def test_legs_that_differ_in_anything_are_no_mirror_images(field: str) -> None:
+    talos = load_talos()
+    left, right = talos.limbs
+    other = replace(right, model=MODELS_THAT_DIFFER[field](right.model))
+    with pytest.raises(InputError, match=f"they differ in .*{field}"):
+        legs_of(replace(talos, limbs=(left, other)))
+
+
+@pytest.mark.parametrize(
+    ("field", "change"),
+    [
+        ("half sizes of the soles", {"half_size": (0.05, 0.06)}),
+        ("friction", {"friction": 0.2}),
+    ],
+)
+def test_feet_that_differ_in_anything_are_no_mirror_images(field: str, change: dict) -> None:
+    talos = load_talos()
+    left, right = talos.limbs
+    other = replace(right, effector=replace(right.effector, **change))
+    with pytest.raises(InputError, match=f"they differ in {field}"):
+        legs_of(replace(talos, limbs=(left, other)))
 
 
 @pytest.mark.parametrize(
