@@ -1,6 +1,7 @@
 """One posture computed the slow way: legs joint by joint, soles corner by corner."""
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,8 +59,8 @@ def stand(
     Raises:
         InputError: the robot's file does not describe its body or a limb's joints.
     """
-    turn, body = about("z", yaw), body_of(robot)
-    moment, mass = body.mass * (root + turn @ body.com), body.mass
+    turn, (mass, com) = about("z", yaw), resting_mass(robot, posture.feet)
+    moment = mass * (root + turn @ com)
     found, rotations, soles, corners = [], {}, {}, {}
     for foot in posture.feet:
         model, square = limb_of(robot, foot), robot.effector(foot).half_size
@@ -117,6 +118,33 @@ def body_of(robot: Robot) -> Body:
     if robot.body is None:
         raise InputError(f"the file of robot '{robot.name}' has no 'body', which postures need")
     return robot.body
+
+
+def resting_mass(robot: Robot, standing: Collection[str]) -> tuple[float, np.ndarray]:
+    """Return mass [kg] and centre of mass [m] of all but the standing limbs, in the root frame.
+
+    Limbs that do not stand and have a model, such as arms, are in their reference posture.
+
+    Args:
+        robot: robot with a body.
+        standing: names of the effectors whose limbs are left out.
+
+    Raises:
+        InputError: the robot's file does not state the mass of its body.
+    """
+    body = body_of(robot)
+    mass, com = body.mass, body.com
+    for limb, effector in zip(robot.limbs, robot.effectors, strict=True):
+        if effector.name in standing or limb.model is None:
+            continue
+        frames, origins, _, _ = chain(limb.model, limb.model.reference)
+        for frame, origin, weight, place in zip(
+            frames, origins, limb.model.link_mass, limb.model.link_com, strict=True
+        ):
+            if weight > 0.0:
+                com = (mass * com + weight * (origin + frame @ place)) / (mass + weight)
+                mass += float(weight)
+    return mass, com
 
 
 def two_point_margin(stood: Stood, moving: str, reaches: dict[str, Polytope]) -> float:

@@ -26,7 +26,8 @@ class LegModel:
 
     Attributes:
         left: model of the left leg.
-        body: all of the robot except its legs.
+        body: all of the robot except its legs; limbs that do not stand, such as arms with palms,
+            are in their reference posture.
     """
 
     left: LimbModel
@@ -103,7 +104,22 @@ def legs_of(robot: Robot) -> LegModel:
             f" y = 0, left before right, as this planner needs them: they differ in"
             f" {', '.join(different)}"
         )
-    return LegModel(left, robot.body)
+    return LegModel(left, _with_resting_limbs(robot, robot.body))
+
+
+def _with_resting_limbs(robot: Robot, body: Body) -> Body:
+    """Return the body together with the limbs that do not stand, in their reference posture."""
+    moment, mass = body.mass * body.com, body.mass
+    resting = [
+        limb.model
+        for index, limb in enumerate(robot.limbs)
+        if index not in robot.feet and limb.model is not None
+    ]
+    for model in resting:
+        posture = model.posture(model.reference)
+        moment = moment + model.mass_moment(posture.frames, posture.origins)
+        mass += float(model.link_mass.sum())
+    return Body(mass, moment / mass) if resting else body
 
 
 def load_talos_legs() -> LegModel:
