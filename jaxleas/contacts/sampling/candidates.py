@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.heuristics import HEURISTICS, Wish
 from jaxleas.contacts.sampling.limbs import SIDES, Roots, to_left_root
-from jaxleas.contacts.sampling.world import World
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Candidates:
         return len(self.row)
 
 
-def near_candidates(world: World, aim: Aim) -> Candidates:
+def near_candidates(case: PlanningCase, aim: Aim) -> Candidates:
     """Return the samples near a surface, each row's best scores first.
 
     The samples lie in order of height: a surface's interval of heights below the root picks a
@@ -72,30 +72,30 @@ def near_candidates(world: World, aim: Aim) -> Candidates:
     ever tried.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         aim: aim of the moving legs, one row per robot.
     """
-    row, sample, surface = _near_pairs(world, aim)
-    wish = Wish(sample, aim.target[row], aim.direction[row], world.ground.normals[surface])
-    score = HEURISTICS[world.settings.heuristic](world.database, wish)
+    row, sample, surface = _near_pairs(case, aim)
+    wish = Wish(sample, aim.target[row], aim.direction[row], case.ground.normals[surface])
+    score = HEURISTICS[case.settings.heuristic](case.database, wish)
     bounds = np.searchsorted(row, np.arange(len(aim) + 1))
     orders, ranks = [], []
     for first, last in pairwise(bounds):
-        order = np.argsort(-score[first:last], kind="stable")[: sum(world.settings.stages)]
+        order = np.argsort(-score[first:last], kind="stable")[: sum(case.settings.stages)]
         orders.append(order + first)
         ranks.append(np.arange(len(order)))
     order = np.concatenate(orders)
     return Candidates(row[order], np.concatenate(ranks), sample[order], surface[order])
 
 
-def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _near_pairs(case: PlanningCase, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (row, sample, surface) of all samples within reach of a surface, row after row.
 
     A slice of samples times a few half-spaces, one surface at a time: gathering the samples of all
     surfaces into one array costs more than this loop.
     """
-    ground, database = world.ground, world.database
-    count, gap = ground.walkable, world.settings.contact_distance
+    ground, database = case.ground, case.database
+    count, gap = ground.walkable, case.settings.contact_distance
     position = aim.roots.position
     reach = database.reach + gap
     x, y = position[:, 0, None], position[:, 1, None]
@@ -109,7 +109,7 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
     last = np.searchsorted(
         database.heights, ground.high[surface, 2] - position[row, 2] + gap
     ).tolist()
-    halfspaces = _halfspaces(world, aim, row, surface)
+    halfspaces = _halfspaces(case, aim, row, surface)
     found = [
         first[pair]
         + np.flatnonzero(
@@ -125,13 +125,13 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
 
 
 def _halfspaces(
-    world: World, aim: Aim, row: np.ndarray, surface: np.ndarray
+    case: PlanningCase, aim: Aim, row: np.ndarray, surface: np.ndarray
 ) -> Float[np.ndarray, "pairs H 4"]:
     """Return, for left-leg soles in the root frame, rows (a, c): near where a . x + c >= 0.
 
     Two sides of the plane at the contact distance, then the edges.
     """
-    ground, gap = world.ground, world.settings.contact_distance
+    ground, gap = case.ground, case.settings.contact_distance
     roots, side = aim.roots[row], SIDES[aim.limb[row]]
     normals = np.concatenate(
         [ground.normals[surface, None], -ground.normals[surface, None], ground.inward[surface]],

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.candidates import Aim, Candidates, near_candidates
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.database import align
 from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
 from jaxleas.contacts.sampling.limbs import (
@@ -20,7 +21,6 @@ from jaxleas.contacts.sampling.limbs import (
 )
 from jaxleas.contacts.sampling.stance import Stances, support_corners
 from jaxleas.contacts.sampling.two_point import com_exists
-from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import mass_moment
 
 _ROBUSTNESS_AT_FIRST = 3  # candidates tested first, of those that pass all other tests
@@ -64,7 +64,7 @@ class _Tried:
 
 
 def create_contacts(
-    world: World,
+    case: PlanningCase,
     aim: Aim,
     stances: Stances,
     order: Int[np.ndarray, " N"],
@@ -78,7 +78,7 @@ def create_contacts(
     scene nor other leg, the two-point condition holds, and the posture's robustness is enough.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         aim: the moving limbs, and the poses of the roots when they land.
         stances: stances before the move; the other foot's contact is kept.
         order: value for `since` of the new contacts.
@@ -89,27 +89,27 @@ def create_contacts(
     each = np.arange(count)
     standing = other_leg(aim.limb)
     kept = place_legs(
-        world.legs,
+        case.legs,
         aim.roots,
         standing,
         stances.sole[each, standing],
         stances.rotation[each, standing],
     )
     result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros((count, 3)))
-    can_leave = _two_points(world, aim, stances, each, stances.sole[each, aim.limb],
+    can_leave = _two_points(case, aim, stances, each, stances.sole[each, aim.limb],
                             stances.rotation[each, aim.limb])  # fmt: skip
-    candidates = near_candidates(world, aim)
+    candidates = near_candidates(case, aim)
     count_left(tally, "leave", int(can_leave.sum()))
     count_left(tally, "near", len(candidates.row))
     candidates = candidates[can_leave[candidates.row]]
     start = 0
-    for stage in world.settings.stages:
+    for stage in case.settings.stages:
         chosen = (candidates.rank >= start) & (candidates.rank < start + stage)
         chosen &= ~result.found[candidates.row]
         start += stage
         if chosen.any():
-            tried = _try(world, aim, stances, kept, candidates[chosen], least_move, tally)
-            _take_first_robust(world, aim, kept, tried, order, result)
+            tried = _try(case, aim, stances, kept, candidates[chosen], least_move, tally)
+            _take_first_robust(case, aim, kept, tried, order, result)
             count_left(tally, "robust enough", int(result.found.sum()))
         if result.found.all():
             break
@@ -123,7 +123,7 @@ def count_left(tally: dict[str, int] | None, test: str, left: int) -> None:
 
 
 def _try(
-    world: World,
+    case: PlanningCase,
     aim: Aim,
     stances: Stances,
     kept: PlacedLegs,
@@ -132,23 +132,23 @@ def _try(
     tally: dict[str, int] | None,
 ) -> _Tried:
     """Return the candidates that pass all tests but robustness."""
-    database, ground = world.database, world.ground
+    database, ground = case.database, case.ground
     roots, limb = aim.roots[some.row], aim.limb[some.row]
     side, normal = SIDES[limb], ground.normals[some.surface]
     sole = to_world(database.soles[some.sample], roots.yaw, side) + roots.position
     above = (normal * sole).sum(axis=1) - ground.offsets[some.surface]
-    sole = sole + (world.settings.contact_lift - above)[:, None] * normal
+    sole = sole + (case.settings.contact_lift - above)[:, None] * normal
     rotation = align(rotations_to_world(database.rotations[some.sample], roots.yaw, side), normal)
-    placed = place_legs(world.legs, roots, limb, sole, rotation)
+    placed = place_legs(case.legs, roots, limb, sole, rotation)
     before = stances.sole[some.row, limb]
     good = placed.reachable & (np.linalg.norm(sole - before, axis=1) >= least_move)
     rows = np.flatnonzero(good)
     count_left(tally, "within the joint limits", len(rows))
-    rows = rows[~legs_collide(world.legs, placed, rows, ground, feet=True)]
+    rows = rows[~legs_collide(case.legs, placed, rows, ground, feet=True)]
     count_left(tally, "clear of the scene", len(rows))
-    rows = _clear_of_other_leg(world, placed, kept, some.row, rows)
+    rows = _clear_of_other_leg(case, placed, kept, some.row, rows)
     count_left(tally, "clear of the other leg", len(rows))
-    rows = rows[_two_points(world, aim, stances, some.row[rows], sole[rows], rotation[rows])]
+    rows = rows[_two_points(case, aim, stances, some.row[rows], sole[rows], rotation[rows])]
     count_left(tally, "within reach of the centre of mass over the other foot", len(rows))
     passed = placed[rows]
     return _Tried(
@@ -157,14 +157,14 @@ def _try(
         rotation=rotation[rows],
         surface=some.surface[rows],
         corners=support_corners(
-            ground, sole[rows], rotation[rows], some.surface[rows], world.sole_half_size
+            ground, sole[rows], rotation[rows], some.surface[rows], case.sole_half_size
         ),
-        moment=mass_moment(world.legs, passed.frames, passed.origins),
+        moment=mass_moment(case.legs, passed.frames, passed.origins),
     )
 
 
 def _take_first_robust(
-    world: World,
+    case: PlanningCase,
     aim: Aim,
     kept: PlacedLegs,
     tried: _Tried,
@@ -172,8 +172,8 @@ def _take_first_robust(
     result: Created,
 ) -> None:
     """Write the first robust candidate of each row into the result."""
-    resting = body_moments(world.legs, aim.roots)
-    resting = resting + mass_moment(world.legs, kept.frames, kept.origins)
+    resting = body_moments(case.legs, aim.roots)
+    resting = resting + mass_moment(case.legs, kept.frames, kept.origins)
     rank = np.arange(len(tried.row)) - np.searchsorted(tried.row, tried.row)
     for chosen in (rank < _ROBUSTNESS_AT_FIRST, rank >= _ROBUSTNESS_AT_FIRST):
         some = tried[chosen & ~result.found[tried.row]]
@@ -181,8 +181,8 @@ def _take_first_robust(
             continue
         limb = aim.limb[some.row]
         stances = with_contact(result.stances[some.row], limb, some, order[some.row])
-        com = (resting[some.row] + some.moment) / world.legs.mass
-        good = np.flatnonzero(world.is_robust(stances, com))
+        com = (resting[some.row] + some.moment) / case.legs.mass
+        good = np.flatnonzero(case.is_robust(stances, com))
         row, first = np.unique(some.row[good], return_index=True)
         first = good[first]
         result.found[row] = True
@@ -213,7 +213,7 @@ def put(stances: Stances, rows: Int[np.ndarray, " M"], new: Stances) -> None:
 
 
 def _two_points(
-    world: World,
+    case: PlanningCase,
     aim: Aim,
     stances: Stances,
     row: np.ndarray,
@@ -223,7 +223,7 @@ def _two_points(
     """Return whether the centre of mass can be over the standing foot, with the other at `sole`."""
     standing = other_leg(aim.limb[row])
     return com_exists(
-        world.legs.com_in_foot,
+        case.legs.com_in_foot,
         stances.sole[row, standing],
         stances.rotation[row, standing],
         stances.corners[row, standing],
@@ -234,8 +234,8 @@ def _two_points(
 
 
 def _clear_of_other_leg(
-    world: World, placed: PlacedLegs, kept: PlacedLegs, row: np.ndarray, chosen: np.ndarray
+    case: PlanningCase, placed: PlacedLegs, kept: PlacedLegs, row: np.ndarray, chosen: np.ndarray
 ) -> np.ndarray:
-    moving = leg_segments(world.legs, placed[chosen])
-    standing = leg_segments(world.legs, kept)[row[chosen]]
-    return chosen[~legs_touch(world.legs, moving, standing)]
+    moving = leg_segments(case.legs, placed[chosen])
+    standing = leg_segments(case.legs, kept)[row[chosen]]
+    return chosen[~legs_touch(case.legs, moving, standing)]

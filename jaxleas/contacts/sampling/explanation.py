@@ -2,26 +2,26 @@
 
 import numpy as np
 
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.create import create_contacts
 from jaxleas.contacts.sampling.guides import KeptGuides
 from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.contacts.sampling.world import World
 
 
-def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) -> str:
+def explain_feet(case: PlanningCase, guides: KeptGuides, stances: Stances, at: int) -> str:
     """Return, for each foot of the first guide path, why it makes no contact at a configuration.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         guides: guide path of the robot.
         stances: stance of its feet.
         at: index of the kept configuration that was not reached.
     """
     guide, here = np.zeros(1, dtype=np.int64), np.array([at])
-    kept = maintain_contacts(world, guides.roots[guides.flat(guide, here)], stances[guide])
+    kept = maintain_contacts(case, guides.roots[guides.flat(guide, here)], stances[guide])
     sentences = []
-    feet = world.robot.foot_names
+    feet = case.robot.foot_names
     for limb, foot in enumerate(feet):
         others = [each for each in range(len(feet)) if each != limb]
         if stuck := [feet[other] for other in others if not kept.limb[0, other]]:
@@ -30,7 +30,7 @@ def explain_feet(world: World, guides: KeptGuides, stances: Stances, at: int) ->
             continue
         tally: dict[str, int] = {}
         aim = guides.aim(guide, here, np.array([limb]))
-        create_contacts(world, aim, stances[guide], guide, tally=tally)
+        create_contacts(case, aim, stances[guide], guide, tally=tally)
         sentences.append(
             f"{foot} {_first_failed(tally, ' and '.join(feet[other] for other in others))}"
         )

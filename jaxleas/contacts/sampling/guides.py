@@ -8,8 +8,8 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
-from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import leg_posture
 from jaxleas.types import GuidePath, InputError
 
@@ -57,16 +57,16 @@ class KeptGuides:
 
 
 def keep_configurations(
-    world: World, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
+    case: PlanningCase, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
 ) -> KeptGuides:
     """Keep every N-th configuration and the last, and judge the trunk at each.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         guide_paths: guide paths to keep, at least one, each of them usable.
         scene_index: index of the ground's scene that each path is in.
     """
-    settings = world.settings
+    settings = case.settings
     kept = []
     for path in guide_paths:
         index = np.arange(0, len(path), settings.keep_every)
@@ -95,28 +95,28 @@ def keep_configurations(
         roots=roots,
         ahead=Roots(np.concatenate(later), np.concatenate(later_yaw), scene),
         direction=np.concatenate(direction),
-        trunk_free=trunk_is_free(world, roots).reshape(index.shape),
-        reference_sole=leg_posture(world.legs, world.legs.reference).tip,
+        trunk_free=trunk_is_free(case, roots).reshape(index.shape),
+        reference_sole=leg_posture(case.legs, case.legs.reference).tip,
     )
 
 
-def trunk_is_free(world: World, roots: Roots) -> Bool[np.ndarray, " N"]:
+def trunk_is_free(case: PlanningCase, roots: Roots) -> Bool[np.ndarray, " N"]:
     """Return at which root poses no box of the trunk touches the scene."""
     free = np.ones(len(roots), dtype=bool)
     ones = np.ones(len(roots))
     turn = rotations_to_world(np.broadcast_to(np.eye(3), (len(roots), 3, 3)), roots.yaw, ones)
     places = Places.of(roots.position, roots.scene, 1)
-    for box in world.robot.trunk:
+    for box in case.robot.trunk:
         low, high = np.asarray(box.low), np.asarray(box.high)
         middle = np.broadcast_to(0.5 * (low + high), (len(roots), 3))
         centre = to_world(middle, roots.yaw, ones) + roots.position
         half = np.broadcast_to(0.5 * (high - low), (len(roots), 3))
-        free &= ~boxes_meet_ground(centre, turn, half, world.ground, places)
+        free &= ~boxes_meet_ground(centre, turn, half, case.ground, places)
     return free
 
 
 def require_usable(path: GuidePath, number: int) -> None:
-    """Refuse a guide path that cannot be walked along.
+    """Refuse a guide path that cannot be followed.
 
     Raises:
         InputError: says which path, and what is wrong with it.

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
 from jaxleas.contacts.sampling.limbs import (
     Roots,
@@ -13,7 +14,6 @@ from jaxleas.contacts.sampling.limbs import (
     place_legs,
 )
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.contacts.sampling.world import World
 from jaxleas.robots.legs import mass_moment
 
 
@@ -32,14 +32,14 @@ class Maintained:
     com: Float[np.ndarray, "N 3"]
 
 
-def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintained:
+def maintain_contacts(case: PlanningCase, roots: Roots, stances: Stances) -> Maintained:
     """Judge the same contacts at other root poses.
 
     The trunk's collisions depend on the guide path alone and are judged beforehand; the feet have
     not moved since they were judged.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         roots: root poses to judge.
         stances: contacts of the robots.
     """
@@ -47,7 +47,7 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     limb = np.tile(np.arange(limbs), count)
     pair = np.repeat(np.arange(count), limbs)
     placed = place_legs(
-        world.legs,
+        case.legs,
         roots[pair],
         limb,
         stances.sole.reshape(-1, 3),
@@ -56,16 +56,16 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     kept = placed.reachable.copy()
     rows = np.flatnonzero(kept)
     if len(rows):
-        kept[rows] = ~legs_collide(world.legs, placed, rows, world.ground, feet=False)
+        kept[rows] = ~legs_collide(case.legs, placed, rows, case.ground, feet=False)
     kept = kept.reshape(count, limbs)
-    segments = leg_segments(world.legs, placed)
+    segments = leg_segments(case.legs, placed)
     segments = segments.reshape(count, limbs, *segments.shape[1:])
-    both = kept.all(axis=1) & ~legs_touch(world.legs, segments[:, 0], segments[:, 1])
+    both = kept.all(axis=1) & ~legs_touch(case.legs, segments[:, 0], segments[:, 1])
     moments = (
-        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, limbs, 3).sum(axis=1)
+        mass_moment(case.legs, placed.frames, placed.origins).reshape(count, limbs, 3).sum(axis=1)
     )
-    com = (body_moments(world.legs, roots) + moments) / world.legs.mass
+    com = (body_moments(case.legs, roots) + moments) / case.legs.mass
     rows = np.flatnonzero(both)
     if len(rows):
-        both[rows] = world.is_robust(stances[rows], com[rows])
+        both[rows] = case.is_robust(stances[rows], com[rows])
     return Maintained(kept, both, com)

@@ -5,13 +5,13 @@ from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import near_candidates
+from jaxleas.contacts.sampling.case import make_case
 from jaxleas.contacts.sampling.database import align, leg_database, make_database
 from jaxleas.contacts.sampling.ground import ground_from
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import segment_distance
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.two_point import com_exists
-from jaxleas.contacts.sampling.world import make_world
 from jaxleas.robots import load_talos
 from jaxleas.robots.legs import load_talos_legs
 from tests.contacts.sampling.worlds import stairs, straight
@@ -113,16 +113,16 @@ def test_align_turns_the_normal_by_the_smallest_angle():
 
 def test_candidates_are_all_samples_near_a_surface_best_first():
     settings = SamplingSettings(samples=4000, stages=(100_000,))
-    world = make_world(load_talos(), [stairs()], settings)
-    guides = keep_configurations(world, [straight(2.0, climbing=True)], [0])
+    case = make_case(load_talos(), [stairs()], settings)
+    guides = keep_configurations(case, [straight(2.0, climbing=True)], [0])
     guide, at, limb = np.array([0, 0]), np.array([8, 12]), np.array([0, 1])
     aim = guides.aim(guide, at, limb)
-    found = near_candidates(world, aim)
+    found = near_candidates(case, aim)
     for row in range(2):
         mine = {*zip(found.sample[found.row == row], found.surface[found.row == row], strict=True)}
         expected = set()
         mirror = np.array([1.0, (1.0, -1.0)[limb[row]], 1.0])
-        soles = world.database.soles * mirror + aim.roots.position[row]  # the yaw is zero
+        soles = case.database.soles * mirror + aim.roots.position[row]  # the yaw is zero
         for index, (name, polygon) in enumerate(stairs().surfaces.items()):
             del name
             low, high = polygon.min(axis=0), polygon.max(axis=0)
@@ -132,8 +132,8 @@ def test_candidates_are_all_samples_near_a_surface_best_first():
         assert mine == expected
         assert len(mine) > 50
         samples = found.sample[found.row == row]
-        score = 0.1 * world.database.manipulability[samples] - (
-            (world.database.soles[samples] - aim.target[row]) ** 2
+        score = 0.1 * case.database.manipulability[samples] - (
+            (case.database.soles[samples] - aim.target[row]) ** 2
         ).sum(axis=1)
         assert (np.diff(score) <= 1e-12).all()
         np.testing.assert_array_equal(found.rank[found.row == row], np.arange(len(samples)))

@@ -1,4 +1,4 @@
-"""The world of a plan: robot, data base, scene, settings."""
+"""What contacts are planned for: a robot in scenes, with its data base and the settings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from jaxleas.terrain.scene import Scene
 
 
 @dataclass(frozen=True, eq=False)
-class World:
+class PlanningCase:
     """Robot, data base, scenes and settings.
 
     Attributes:
@@ -69,7 +69,7 @@ class World:
         )
 
 
-def make_world(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> World:
+def make_case(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> PlanningCase:
     """Return a robot in scenes.
 
     Args:
@@ -80,7 +80,7 @@ def make_world(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings
     Raises:
         InputError: the robot's file does not describe two legs that are mirror images.
     """
-    return World(
+    return PlanningCase(
         robot,
         legs_of(robot),
         leg_database(robot, settings.samples, settings.seed),
