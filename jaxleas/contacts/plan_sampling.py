@@ -34,7 +34,7 @@ def plan_sampling(
 ) -> ContactPlan:
     """Plan a robot's contacts along a guide path (T 4.1): acyclic, follows the guide exactly.
 
-    A phase of the plan is a contact that was made; `postures` has both feet at every kept
+    A phase of the plan is a contact that was made; `postures` has all feet at every kept
     configuration. Without success the plan holds what was reached: "not_found" proves nothing.
 
     Args:
@@ -43,7 +43,7 @@ def plan_sampling(
         settings: settings of the planner.
         time_limit: time limit, counted once the data base is made [s]; after it the plan's
             status is "time_limit".
-        robot: robot with two legs; Talos by default.
+        robot: robot with two legs or more; Talos by default.
 
     Raises:
         InputError: the guide or the scene cannot be used, or the guide leaves the scene.

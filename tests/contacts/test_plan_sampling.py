@@ -18,7 +18,6 @@ from jaxleas.contacts.problem import FootPose
 from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.files import write_json, write_npz
 from jaxleas.robots import load_talos
-from jaxleas.robots.legs import leg_posture, load_talos_legs
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
@@ -140,13 +139,13 @@ def test_a_plan_for_another_guide_or_scene_is_refused(climb) -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_joint_by_joint_chain_is_the_legs_kinematics(side: float) -> None:
-    legs = load_talos_legs()
+    left = load_talos().limbs[0].model
     mirror = np.diag([1.0, side, 1.0])
-    for angles in np.random.default_rng(0).uniform(legs.lower, legs.upper, (20, 6)):
-        own = angles if side > 0 else angles * legs.mirror_signs
+    for angles in np.random.default_rng(0).uniform(left.chain.lower, left.chain.upper, (20, 6)):
+        own = angles if side > 0 else angles * left.chain.mirror_signs
         model = load_talos().limbs[0 if side > 0 else 1].model
         frames, origins, sole, turn = chain(model, own)
-        posture = leg_posture(legs, angles)
+        posture = left.posture(angles)
         np.testing.assert_allclose(sole, mirror @ posture.tip, atol=1e-12)
         np.testing.assert_allclose(turn, mirror @ posture.tip_rotation @ mirror, atol=1e-12)
         np.testing.assert_allclose(origins, posture.origins @ mirror, atol=1e-12)

@@ -52,7 +52,7 @@ class Diary:
             begun: time of the start, by `perf_counter` [s].
         """
         names = case.ground.names
-        guide, at, kind, moved, com, stances = self._columns()
+        guide, at, kind, moved, com, stances = self._columns(case)
         robustness = case.robustness(stances, com) if len(guide) else np.zeros(0)
         order = np.argsort(guide, kind="stable")
         bounds = np.searchsorted(guide[order], np.arange(len(ends) + 1))
@@ -85,11 +85,11 @@ class Diary:
         return plans
 
     def _columns(
-        self,
+        self, case: PlanningCase
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Stances]:
         if not self._entries:
             nothing = np.zeros(0, dtype=np.int64)
-            return nothing, nothing, nothing, nothing, np.zeros((0, 3)), no_stances(0)
+            return nothing, nothing, nothing, nothing, np.zeros((0, 3)), no_stances(case.legs, 0)
         guide, at, kind, moved, stances, com = zip(*self._entries, strict=True)
         together = Stances(
             *(

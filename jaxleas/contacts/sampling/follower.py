@@ -7,12 +7,11 @@ from time import perf_counter
 import numpy as np
 
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.create import Created, create_contacts, put
+from jaxleas.contacts.sampling.create import Created, Move, create_contacts, put
 from jaxleas.contacts.sampling.diary import Diary
 from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations
-from jaxleas.contacts.sampling.limbs import SIDES
 from jaxleas.contacts.sampling.maintain import maintain_contacts
 from jaxleas.contacts.sampling.plan import Ending, How, SamplingPlan
 from jaxleas.types import GuidePath
@@ -56,7 +55,7 @@ class GuideFollower:
         self.at = np.zeros(count, dtype=np.int64)
         self.failures = np.zeros(count, dtype=np.int64)
         self.repositions = np.zeros(count, dtype=np.int64)
-        self.order = np.full(count, len(SIDES))
+        self.order = np.full(count, len(case.legs))
         self.live = np.ones(count, dtype=bool)
         self.ends: list[tuple[Ending, str]] = [("reached", "")] * count
         self.diary = Diary()
@@ -82,13 +81,14 @@ class GuideFollower:
         first = first_stances(self.case, self.guides)
         self.stances = first.stances
         free = self.guides.trunk_free[:, 0]
+        both = "both" if self.limbs == 2 else "all"
         self._stop(
             np.flatnonzero(~free), "trunk", "the trunk touches the scene at the first configuration"
         )
         self._stop(
             np.flatnonzero(free & ~first.found),
             "no_start",
-            "no robust stance with both feet exists at the first configuration",
+            f"no robust stance with {both} feet exists at the first configuration",
         )
         good = np.flatnonzero(first.found & free)
         self.diary.write(
@@ -107,7 +107,7 @@ class GuideFollower:
             self.case, self.guides.roots[self.guides.flat(guide, at)], self.stances[guide]
         )
         good = np.zeros(exists.shape, dtype=bool)
-        good[row, look] = kept.both & self.guides.trunk_free[guide, at]
+        good[row, look] = kept.whole & self.guides.trunk_free[guide, at]
         good = np.logical_and.accumulate(good, axis=1)
         taken = good[row, look]
         self.diary.write(
@@ -148,11 +148,13 @@ class GuideFollower:
         """Move one foot at the last configuration reached, the oldest contact first."""
         self.failures[failed] += 1
         settings = self.case.settings
-        enough = self.failures[failed] >= settings.max_tries
+        # With two feet one reposition mends a failure; with more, every other foot may need one.
+        most = (settings.max_tries - 1) * (self.limbs - 1) + 1
+        enough = self.failures[failed] >= most
         self._stop(
             failed[enough],
             "no_contact",
-            "neither foot finds a contact that leads on to the next configuration, nor after "
+            f"{self._no_foot} finds a contact that leads on to the next configuration, nor after "
             "repositioning",
         )
         many = ~enough & (self.repositions[failed] >= settings.max_repositions)
@@ -172,13 +174,17 @@ class GuideFollower:
         self._stop(
             pending,
             "no_contact",
-            "neither foot finds a contact that leads on to the next configuration, nor can one be "
-            "repositioned",
+            f"{self._no_foot} finds a contact that leads on to the next configuration, nor can one"
+            " be repositioned",
         )
 
     def _by_age(self, guide: np.ndarray, turn: int) -> np.ndarray:
         """Return the limb with the oldest contact (turn 0), the next one (turn 1), and so on."""
         return np.argsort(self.stances.since[guide], axis=1, kind="stable")[:, turn]
+
+    @property
+    def _no_foot(self) -> str:
+        return "neither foot" if self.limbs == 2 else "no foot"
 
     @property
     def limbs(self) -> int:
@@ -188,13 +194,9 @@ class GuideFollower:
     def _create(
         self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray, least_move: float
     ) -> Created:
-        return create_contacts(
-            self.case,
-            self.guides.aim(guide, at, limb),
-            self.stances[guide],
-            self.order[guide],
-            least_move=least_move,
-        )
+        aim = self.guides.aim(guide, at, limb)
+        move = Move(aim, self.stances[guide], self.order[guide], least_move)
+        return create_contacts(self.case, move)
 
     def _accept(
         self, how: How, guide: np.ndarray, limb: np.ndarray, made: Created, at: np.ndarray

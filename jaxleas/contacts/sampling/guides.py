@@ -9,8 +9,8 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
-from jaxleas.robots.legs import leg_posture
+from jaxleas.contacts.sampling.roots import Roots, rotations_to_world, to_model, to_world
+from jaxleas.robots.legs import Legs
 from jaxleas.types import GuidePath, InputError
 
 MOST_COORDINATE = 1e4  # a guide path further out is given in other units [m]
@@ -27,7 +27,9 @@ class KeptGuides:
         ahead: root poses some time later, in the same rows.
         direction: unit vector of the motion in the world, zero at standstill, in the same rows.
         trunk_free: whether the trunk touches nothing.
-        reference_sole: reference position of the left foot, in the root frame [m].
+        reference_sole: reference position of each foot, in the root frame, mirrored where its leg
+            mirrors its model [m].
+        side: side of each leg: -1 for the mirror image of its model, else +1.
     """
 
     index: Int[np.ndarray, "B T"]
@@ -36,7 +38,8 @@ class KeptGuides:
     ahead: Roots
     direction: Float[np.ndarray, "rows 3"]
     trunk_free: Bool[np.ndarray, "B T"]
-    reference_sole: Float[np.ndarray, " 3"]
+    reference_sole: Float[np.ndarray, "F 3"]
+    side: Float[np.ndarray, " F"]
 
     def flat(self, guide: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Return the rows of configurations `at` of guide paths `guide`."""
@@ -45,14 +48,13 @@ class KeptGuides:
     def aim(self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray) -> Aim:
         """Return the aim of a moving foot at a configuration."""
         rows = self.flat(guide, at)
-        roots, ahead, side = self.roots[rows], self.ahead[rows], SIDES[limb]
-        reference = np.broadcast_to(self.reference_sole, (len(rows), 3))
-        target = to_world(reference, ahead.yaw, side) + ahead.position
+        roots, ahead, side = self.roots[rows], self.ahead[rows], self.side[limb]
+        target = to_world(self.reference_sole[limb], ahead.yaw, side) + ahead.position
         return Aim(
             roots,
             limb,
-            to_left_root(target - roots.position, roots.yaw, side),
-            to_left_root(self.direction[rows], roots.yaw, side),
+            to_model(target - roots.position, roots.yaw, side),
+            to_model(self.direction[rows], roots.yaw, side),
         )
 
 
@@ -96,8 +98,15 @@ def keep_configurations(
         ahead=Roots(np.concatenate(later), np.concatenate(later_yaw), scene),
         direction=np.concatenate(direction),
         trunk_free=trunk_is_free(case, roots).reshape(index.shape),
-        reference_sole=leg_posture(case.legs, case.legs.reference).tip,
+        reference_sole=_reference_soles(case.legs),
+        side=case.legs.side,
     )
+
+
+def _reference_soles(legs: Legs) -> Float[np.ndarray, "F 3"]:
+    """Return the reference position of each foot as its leg's model has it [m]."""
+    soles = [model.posture(model.reference).tip for model in legs.models]
+    return np.array([soles[number] for number in legs.model_of])
 
 
 def trunk_is_free(case: PlanningCase, roots: Roots) -> Bool[np.ndarray, " N"]:

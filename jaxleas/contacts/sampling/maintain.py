@@ -1,20 +1,21 @@
 """Keep the contacts while the root moves on: within reach, free of collisions, robust."""
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
-from jaxleas.contacts.sampling.limbs import (
-    Roots,
+from jaxleas.contacts.sampling.leg_clearance import leg_capsules, legs_touch
+from jaxleas.contacts.sampling.placed_legs import (
     body_moments,
     legs_collide,
+    mass_moments,
     place_legs,
 )
+from jaxleas.contacts.sampling.roots import Roots
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.robots.legs import mass_moment
 
 
 @dataclass(frozen=True)
@@ -23,12 +24,12 @@ class Maintained:
 
     Attributes:
         limb: whether each leg alone can keep its contact.
-        both: whether the posture as a whole is valid: legs clear of each other, robust.
+        whole: whether the posture as a whole is valid: legs clear of each other, robust.
         com: centre of mass in the world [m].
     """
 
-    limb: Bool[np.ndarray, "N 2"]
-    both: Bool[np.ndarray, " N"]
+    limb: Bool[np.ndarray, "N F"]
+    whole: Bool[np.ndarray, " N"]
     com: Float[np.ndarray, "N 3"]
 
 
@@ -58,14 +59,13 @@ def maintain_contacts(case: PlanningCase, roots: Roots, stances: Stances) -> Mai
     if len(rows):
         kept[rows] = ~legs_collide(case.legs, placed, rows, case.ground, feet=False)
     kept = kept.reshape(count, limbs)
-    segments = leg_segments(case.legs, placed)
-    segments = segments.reshape(count, limbs, *segments.shape[1:])
-    both = kept.all(axis=1) & ~legs_touch(case.legs, segments[:, 0], segments[:, 1])
-    moments = (
-        mass_moment(case.legs, placed.frames, placed.origins).reshape(count, limbs, 3).sum(axis=1)
-    )
+    whole = np.all(kept, axis=1)
+    capsules = leg_capsules(case.legs, placed)
+    for one, other in combinations(range(limbs), 2):
+        whole &= ~legs_touch(capsules[one::limbs], capsules[other::limbs])
+    moments = mass_moments(case.legs, placed).reshape(count, limbs, 3).sum(axis=1)
     com = (body_moments(case.legs, roots) + moments) / case.legs.mass
-    rows = np.flatnonzero(both)
+    rows = np.flatnonzero(whole)
     if len(rows):
-        both[rows] = case.is_robust(stances[rows], com[rows])
-    return Maintained(kept, both, com)
+        whole[rows] = case.is_robust(stances[rows], com[rows])
+    return Maintained(kept, whole, com)

@@ -33,7 +33,7 @@ def plan_contacts(
         scene: surfaces to stand on and obstacles to avoid.
         guide_path: guide path to follow exactly.
         settings: settings of the planner; the published ones by default.
-        robot: robot with two legs; Talos by default.
+        robot: robot with two legs or more; Talos by default.
 
     Raises:
         InputError: the guide path or the scene cannot be used.
@@ -71,7 +71,7 @@ def plan_over(
         guide_paths: guide paths to follow exactly.
         scene_index: index of each guide path's scene.
         settings: settings of the planner; the published ones by default.
-        robot: robot with two legs; Talos by default.
+        robot: robot with two legs or more; Talos by default.
 
     Returns:
         Plans in the order of the guide paths.
