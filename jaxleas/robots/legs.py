@@ -77,6 +77,14 @@ class Legs:
             offsets[leg, : len(reach.offsets)] = reach.offsets
         return normals, offsets
 
+    @cached_property
+    def com_heights(self) -> tuple[float, float]:
+        """Lowest and highest place of the centre of mass above a foot in any reach [m]."""
+        bounds = [model.com_reach.bounds for model in self.models]
+        return min(float(each.low[2]) for each in bounds), max(
+            float(each.high[2]) for each in bounds
+        )
+
     def by_model(
         self, leg: Int[np.ndarray, " N"]
     ) -> Iterator[tuple[int, Int[np.ndarray, " M"] | slice]]:

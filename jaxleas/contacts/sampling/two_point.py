@@ -21,7 +21,8 @@ from jaxleas.contacts.sampling.support import Sides, sides_of_hull, sides_of_pol
 from jaxleas.dynamics.small_lp import maximise
 from jaxleas.robots.legs import Legs
 
-_HEIGHTS = np.array([0.5, 0.6, 0.7, 0.8])  # of points tried before any linear program [m]
+_TRIED = np.array([0.35, 0.5, 0.65, 0.8])  # heights tried before any linear program, as shares
+_START = 0.6  # height that a linear program starts from, likewise
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ def com_region(legs: Legs, standing: Soles) -> ComRegion:
     points = corners.reshape(len(origin), -1, 3)
     middle = points.mean(axis=1, keepdims=True)
     places = np.concatenate([middle, 0.5 * (points + middle)], axis=1)[:, :, None]
-    tried = places + _HEIGHTS[:, None] * np.array([0.0, 0.0, 1.0])
+    tried = places + _heights(legs, _TRIED)[:, None] * np.array([0.0, 0.0, 1.0])
     reaches = [
         _reach(legs, standing.limb[:, slot], standing.rotation[:, slot],
                standing.position[:, slot] - origin)
@@ -118,7 +119,7 @@ def com_exists(
     exists = np.any(np.all(fits, axis=2), axis=1)
     open_ = np.flatnonzero(~exists)
     if len(open_):
-        exists[open_] = _margin(rows[open_]) >= 0.0
+        exists[open_] = _margin(rows[open_], float(_heights(legs, _START))) >= 0.0
     return exists
 
 
@@ -139,9 +140,20 @@ def _reach(legs: Legs, limb: np.ndarray, rotation: np.ndarray, place: np.ndarray
     return Sides(turned, offsets + (turned @ place[:, :, None])[:, :, 0])
 
 
-def _margin(rows: Sides) -> Float[np.ndarray, " N"]:
-    """Return the largest t such that some c keeps all normals . c + t <= slack [m]."""
-    start = np.array([0.0, 0.0, 0.65])
+def _heights(legs: Legs, shares: float | np.ndarray) -> np.ndarray:
+    """Return heights above a sole, from the lowest to the highest that the reaches allow [m]."""
+    low, high = legs.com_heights
+    return low + np.asarray(shares) * (high - low)
+
+
+def _margin(rows: Sides, height: float) -> Float[np.ndarray, " N"]:
+    """Return the largest t such that some c keeps all normals . c + t <= slack [m].
+
+    Args:
+        rows: half-spaces, relative to a sole.
+        height: height above it that the search starts from [m].
+    """
+    start = np.array([0.0, 0.0, height])
     room = rows.slack - rows.normals @ start
     least = np.minimum(room.min(axis=1), 0.0)
     normals = np.concatenate([rows.normals, np.ones((*rows.slack.shape, 1))], axis=2)

@@ -7,16 +7,22 @@ from scipy.optimize import linprog
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
 
+from jaxleas.contacts.posture_balance import two_point_margin
+from jaxleas.contacts.posture_model import Stood
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sampling.candidates import near_candidates
 from jaxleas.contacts.sampling.case import make_case
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import leg_capsules, legs_touch, segment_distance
-from jaxleas.contacts.sampling.placed_legs import mass_moments, place_legs
+from jaxleas.contacts.sampling.placed_legs import legs_collide, mass_moments, place_legs
 from jaxleas.contacts.sampling.roots import Roots
 from jaxleas.contacts.sampling.support import sides_of_hull
 from jaxleas.contacts.sampling.two_point import Soles, com_exists, com_region
+from jaxleas.geometry import Box
+from jaxleas.robots import load_talos
 from jaxleas.robots.legs import legs_of
+from jaxleas.robots.limb_model import LinkBox
+from jaxleas.terrain.scene import Scene
 
 from .toys import HEIGHT, quadruped, tripod
 from .worlds import flat, straight
@@ -145,3 +151,59 @@ def test_two_points_of_four_feet_agree_with_a_linear_program() -> None:
         expected.append(answer.status == 0 and all(carried))
     np.testing.assert_array_equal(found, expected)
     assert 0.1 < np.mean(found) < 0.9
+
+
+def test_planner_and_certificate_agree_where_four_feet_carry() -> None:
+    """They share no code: the planner's region and the certificate's margin, on random stances."""
+    robot = quadruped()
+    legs = legs_of(robot)
+    rng = np.random.default_rng(12)
+    places = np.array([each.model.posture(each.model.reference).tip for each in robot.limbs])
+    agreed = []
+    for _ in range(60):
+        position = places + rng.normal(scale=[0.2, 0.2, 0.05], size=(4, 3))
+        tilt = np.where(rng.random(4) < 0.1, 0.7, 0.1)
+        yaw = rng.uniform(-0.4, 0.4, 4)
+        rotation = Rotation.from_euler("zx", np.stack([yaw, tilt], axis=1)).as_matrix()
+        moving = int(rng.integers(4))
+        others = legs.others[[moving]]
+        standing = Soles(others, position[others], rotation[others], position[others][:, :, None])
+        here, turn = position[[moving]], rotation[[moving]]
+        region = com_region(legs, standing)
+        found = com_exists(legs, region, np.array([moving]), here, turn)[0]
+        names = robot.foot_names
+        stood = Stood(
+            found=[],
+            rotations=dict(zip(names, rotation, strict=True)),
+            soles=dict(zip(names, position, strict=True)),
+            corners=dict(zip(names, position[:, None], strict=True)),
+            com=np.zeros(3),
+            mass=1.0,
+        )
+        margin = two_point_margin(stood, names[moving], robot)
+        assert found == (margin >= 0.0), margin
+        agreed.append(found)
+    assert 0.1 < np.mean(agreed) < 0.9
+
+
+def test_each_leg_is_kept_clear_by_its_own_boxes() -> None:
+    """The right shank of Talos sticks out, and beside it is a wall that the left one clears."""
+    talos = load_talos()
+    left, right = talos.limbs
+    assert right.model
+    spoke = LinkBox(3, Box((-0.02, -0.25, -0.15), (0.02, 0.25, -0.05)))
+    wide = replace(right, model=replace(right.model, boxes=(*right.model.boxes, spoke)))
+    y = 0.35
+    barrier = np.array([[-2.0, y, 0.0], [8.0, y, 0.0], [8.0, y, 1.0], [-2.0, y, 1.0]])
+    scene = Scene(flat().surfaces, {"wall": barrier})
+    settings, limb = SamplingSettings(samples=2000), np.array([0, 1])
+    sole = np.array([[0.0, 0.12, 0.001], [0.0, -0.12, 0.001]])
+    for robot, sticks_out in ((talos, False), (replace(talos, limbs=(left, wide)), True)):
+        case = make_case(robot, [scene], settings)
+        for yaw, wall_is_right in ((0.0, False), (np.pi, True)):
+            turn = np.tile(Rotation.from_euler("z", yaw).as_matrix(), (2, 1, 1))
+            roots = Roots(np.tile([0.0, 0.0, 0.9], (2, 1)), np.full(2, yaw), np.zeros(2, dtype=int))
+            placed = place_legs(case.legs, roots, limb, sole @ turn[0].T, turn)
+            assert placed.reachable.all()
+            hit = legs_collide(case.legs, placed, limb, case.ground, feet=True)
+            np.testing.assert_array_equal(hit, [False, sticks_out and wall_is_right])
