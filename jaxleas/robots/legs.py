@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.robots.leg_kinds import require_that_feet_can_stand, same_model
 from jaxleas.robots.limb_model import Body, LimbModel
@@ -37,7 +37,7 @@ class Legs:
     model_of: Int[np.ndarray, " F"]
     side: Float[np.ndarray, " F"]
     corners: Float[np.ndarray, "F C 2"]
-    has_corner: np.ndarray
+    has_corner: Bool[np.ndarray, "F C"]
     friction: Float[np.ndarray, " F"]
     body: Body
 

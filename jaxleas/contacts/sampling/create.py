@@ -1,6 +1,7 @@
 """Make one contact with one foot while all others stand: candidates, projection, tests."""
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -63,11 +64,13 @@ class _Standing:
 
     Attributes:
         capsules: capsules of their legs, for each in turn.
+        clear: whether these legs touch none of each other.
         moment: mass times position of all but the moving leg, in the world [kg m].
         region: where the centre of mass can be.
     """
 
     capsules: tuple[LegCapsules, ...]
+    clear: Bool[np.ndarray, " N"]
     moment: Float[np.ndarray, "N 3"]
     region: ComRegion
 
@@ -110,6 +113,8 @@ def create_contacts(case: PlanningCase, move: Move, tally: Tally | None = None) 
     standing = _standing(case, aim, stances)
     result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros((count, 3)))
     candidates = near_candidates(case, aim)
+    candidates = candidates[standing.clear[candidates.row]]
+    count_left(tally, Requirement.OTHERS_CLEAR, int(standing.clear.sum()))
     if move.lifted:
         before, turned = stances.sole[each, aim.limb], stances.rotation[each, aim.limb]
         can_leave = com_exists(case.legs, standing.region, aim.limb, before, turned)
@@ -141,10 +146,15 @@ def _standing(case: PlanningCase, aim: Aim, stances: Stances) -> _Standing:
         case.legs, roots, others.reshape(-1), sole.reshape(-1, 3), rotation.reshape(-1, 3, 3)
     )
     moments = mass_moments(case.legs, placed).reshape(count, feet, 3).sum(axis=1)
-    capsules = leg_capsules(case.legs, placed)
+    together = leg_capsules(case.legs, placed)
+    capsules = tuple(together[foot::feet] for foot in range(feet))
+    clear = np.ones(count, dtype=bool)
+    for one, other in combinations(capsules, 2):
+        clear &= ~legs_touch(one, other)
     soles = Soles(others, sole, rotation, stances.corners[row, others])
     return _Standing(
-        capsules=tuple(capsules[foot::feet] for foot in range(feet)),
+        capsules=capsules,
+        clear=clear,
         moment=body_moments(case.legs, aim.roots) + moments,
         region=com_region(case.legs, soles),
     )

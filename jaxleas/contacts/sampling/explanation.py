@@ -13,6 +13,7 @@ from jaxleas.contacts.sampling.stance import Stances
 
 _NO_PLACE = "finds no contact: of {before} places none is "
 _UNMET = {
+    Requirement.OTHERS_CLEAR: "cannot move, as the legs of {others} touch each other",
     Requirement.LIFTED: "cannot be lifted: the centre of mass cannot be over {others}",
     Requirement.NEAR: "is near no surface with any of its leg's configurations",
     Requirement.WITHIN_LIMITS: _NO_PLACE + "within the joint limits",

@@ -6,6 +6,8 @@ from enum import Enum, auto
 class Requirement(Enum):
     """What a test asks of a new contact, or of the foot that is to make it."""
 
+    OTHERS_CLEAR = auto()
+    """The legs that stand touch none of each other."""
     LIFTED = auto()
     """The centre of mass can be over the standing feet while the foot leaves its old place."""
     NEAR = auto()

@@ -12,9 +12,12 @@ from jaxleas.contacts.posture_model import Stood
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sampling.candidates import near_candidates
 from jaxleas.contacts.sampling.case import make_case
+from jaxleas.contacts.sampling.create import Move, create_contacts
+from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import leg_capsules, legs_touch, segment_distance
 from jaxleas.contacts.sampling.placed_legs import legs_collide, mass_moments, place_legs
+from jaxleas.contacts.sampling.requirement import Requirement
 from jaxleas.contacts.sampling.roots import Roots
 from jaxleas.contacts.sampling.support import sides_of_hull
 from jaxleas.contacts.sampling.two_point import Soles, com_exists, com_region
@@ -184,6 +187,25 @@ def test_planner_and_certificate_agree_where_four_feet_carry() -> None:
         assert found == (margin >= 0.0), margin
         agreed.append(found)
     assert 0.1 < np.mean(agreed) < 0.9
+
+
+def test_no_foot_moves_while_two_standing_legs_touch() -> None:
+    """The front legs of the tripod side by side, and crossed."""
+    case = make_case(tripod(), [flat()], SamplingSettings(samples=2500))
+    guides = keep_configurations(case, [GUIDE], [0])
+    zero = np.zeros(1, dtype=int)
+    first = first_stances(case, guides)
+    assert first.found.all()
+    for apart, touch in ((0.12, False), (-0.06, True)):
+        stances = first.stances[zero]
+        for foot, y in ((0, 0.5 * apart), (1, -0.5 * apart)):
+            shift = np.array([0.0, y, 0.0]) - stances.sole[0, foot] * [0.0, 1.0, 0.0]
+            stances.sole[0, foot] += shift
+            stances.corners[0, foot] += shift
+        tally = {}
+        made = create_contacts(case, Move(guides.aim(zero, zero, zero + 2), stances, zero), tally)
+        assert tally[Requirement.OTHERS_CLEAR] == (0 if touch else 1)
+        assert made.found[0] == (not touch)
 
 
 def test_each_leg_is_kept_clear_by_its_own_boxes() -> None:
