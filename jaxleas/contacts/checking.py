@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
-from jaxleas.contacts.outcome import draw_walk
+from jaxleas.contacts.outcome import draw_along_guide
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide
 from jaxleas.contacts.problem import ContactProblem
@@ -66,7 +66,7 @@ def check_postures(
 
     certificate = certify_postures(read, asked.guide, asked.scene, load_robot(asked.robot))
     if picture is not None:
-        draw_walk(picture, read, asked)
+        draw_along_guide(picture, read, asked)
     if not certificate.certified:
         raise NotCertifiedError(f"{plan} is no plan for {what}: {certificate.complaint}")
     worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"

@@ -24,8 +24,8 @@ def write_outcome(
         words = describe(asked, answer)
     else:
         if picture is not None:
-            draw_walk(picture, answer, asked)
-        words = describe_walk(asked.guide, answer)
+            draw_along_guide(picture, answer, asked)
+        words = describe_along_guide(asked.guide, answer)
     print(f"{words}\nwritten to {out}")
     return answer
 
@@ -44,7 +44,7 @@ def describe(problem: ContactProblem, found: ContactPlan) -> str:
     return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
 
 
-def describe_walk(guide: GuidePath, found: ContactPlan) -> str:
+def describe_along_guide(guide: GuidePath, found: ContactPlan) -> str:
     """Return a sampling plan's outcome in one line."""
     postures = found.postures or ()
     steps = f"{len(found.surfaces)} steps in {1000.0 * found.seconds:.0f} ms"
@@ -66,11 +66,11 @@ def draw(
     draw_plan(picture, problem, found, guide, _as_far_as_it_goes(problem, found))
 
 
-def draw_walk(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
+def draw_along_guide(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
     """Draw a plan that follows a guide path."""
-    from jaxleas.contacts.plan_sampling import walked_problem
+    from jaxleas.contacts.plan_sampling import problem_of_steps
 
-    steps = walked_problem(found, asked.guide, asked.scene, load_robot(asked.robot))
+    steps = problem_of_steps(found, asked.guide, asked.scene, load_robot(asked.robot))
     draw(picture, steps, found, asked.guide)
 
 

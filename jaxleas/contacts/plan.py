@@ -37,7 +37,7 @@ class ContactPlan:
             solver does that inside.
         undecided: phases that the L1 relaxation left without a surface (SL1M only).
         robustness: robustness of each posture [N]; None for planners without postures.
-        postures: both feet at each kept configuration of the guide (sampling only).
+        postures: all feet at each kept configuration of the guide (sampling only).
         gap: gap between a standing sole and its surface in these postures [m].
     """
 
