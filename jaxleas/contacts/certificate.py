@@ -102,7 +102,8 @@ def _com(
         found.append((_excess(reach.normals, reach.offsets, local), text))
     name, position, yaw = feet[number]  # c0 over the standing foot, c1 over the landed one
     local = _turn_back(com - position, yaw)
-    over = max(abs(local[0]) - problem.foot_half_size[0], abs(local[1]) - problem.foot_half_size[1])
+    half_length, half_width = problem.half_sizes[name]
+    over = max(abs(local[0]) - half_length, abs(local[1]) - half_width)
     found.append((float(over), f"centre of mass c{number} over {name}"))
     return found
 

@@ -115,7 +115,7 @@ def problem_from_guide(
         initial=initial,
         phases=tuple(phases),
         polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
-        foot_half_size=described.foot_half_size,
+        half_sizes={foot: described.effector(foot).half_size for foot in feet},
         parts=parts,
     )
 

@@ -135,7 +135,7 @@ def _draw_feet(
     colours = dict(zip(problem.effectors, cycle(COLOURS), strict=False))
     labelled = set()
     for foot, point, yaw in feet:
-        corners = point + sole(problem.foot_half_size) @ rotation(yaw).T
+        corners = point + sole(problem.half_sizes[foot]) @ rotation(yaw).T
         label = None if foot in labelled else FULL_NAMES.get(foot, foot)
         colour = colours[foot]
         labelled.add(foot)

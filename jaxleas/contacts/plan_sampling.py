@@ -133,7 +133,7 @@ def walked_problem(
             if each.moved
         ),
         polytopes=StepPolytopes({}, {}),
-        foot_half_size=robot.foot_half_size,
+        half_sizes={each.name: each.half_size for each in robot.effectors},
     )
 
 

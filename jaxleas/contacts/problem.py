@@ -57,11 +57,13 @@ class ContactProblem:
         initial: pose of each effector before the first phase, in the robot's order.
         phases: phases in order; the candidates of the last one are the goal.
         polytopes: reach of a step and of the centre of mass.
-        foot_half_size: half length and half width of the sole [m].
+        half_sizes: half length and half width of each effector's sole [m], by the effector's name;
+            zeros for a point foot.
         parts: for each surface that is part of another one, the name of that surface.
 
     Raises:
-        InputError: model "two_com" is given other than two effectors, or lacks its polytopes.
+        InputError: an effector has no half sizes, or model "two_com" is given other than two
+            effectors, or lacks its polytopes.
     """
 
     robot: str
@@ -70,10 +72,16 @@ class ContactProblem:
     initial: dict[str, FootPose]
     phases: tuple[Phase, ...]
     polytopes: StepPolytopes
-    foot_half_size: tuple[float, float]
+    half_sizes: Mapping[str, tuple[float, float]]
     parts: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        without = [name for name in self.initial if name not in self.half_sizes]
+        if without:
+            raise InputError(
+                f"a contact problem needs the half sizes of each effector: those of"
+                f" {', '.join(without)} are missing"
+            )
         if self.model != "two_com":
             return
         if len(self.initial) != TWO:

@@ -63,7 +63,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
         initial=initial,
         phases=_phases(where, content["phases"], surfaces, tuple(initial)),
         polytopes=_polytopes(where, content, model, tuple(initial)),
-        foot_half_size=_foot_half_size(where, content),
+        half_sizes=_half_sizes(where, content, tuple(initial)),
         parts=_parts(where, content.get("parts"), surfaces),
     )
     require_feet_on_surfaces(problem, where)
@@ -98,7 +98,7 @@ def write_problem(path: str | Path, problem: ContactProblem) -> None:
                 name: {"A": each.normals.tolist(), "b": each.offsets.tolist()}
                 for name, each in named.items()
             },
-            "foot_half_size": list(problem.foot_half_size),
+            "foot_half_size": _half_sizes_to_json(problem),
             "parts": dict(problem.parts),
         },
     )
@@ -230,15 +230,43 @@ def _polytopes(
     return read_polytopes(f"{where}: polytopes", given, model, effectors)
 
 
-def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
+def _half_sizes(
+    where: str, content: dict[str, Any], effectors: tuple[str, ...]
+) -> dict[str, tuple[float, float]]:
+    """Return the half sizes of each effector: one pair is the value for all of them."""
     given = content.get("foot_half_size")
     if given is None:
-        return load_robot(content["robot"]).foot_half_size
+        robot = load_robot(content["robot"])
+        return {name: robot.effector(name).half_size for name in effectors}
+    if not isinstance(given, dict):
+        return dict.fromkeys(effectors, _half_size(f"{where}: foot_half_size", given))
+    if set(given) != set(effectors):
+        raise InputError(
+            f"{where}: foot_half_size is of {', '.join(given) or 'no effector'}: give two numbers"
+            f" [m] for all effectors, or for each of {', '.join(effectors)}"
+        )
+    return {
+        name: _half_size(f"{where}: foot_half_size of {name}", given[name]) for name in effectors
+    }
+
+
+def _half_size(where: str, given: Any) -> tuple[float, float]:
     if not isinstance(given, list) or len(given) != 2 or not all(_is_number(x) for x in given):
-        raise InputError(f"{where}: foot_half_size must be two numbers [m], not {given!r:.60}")
-    if not all(0.0 < x < 1.0 for x in given):
-        raise InputError(f"{where}: foot_half_size {given} is not between 0 and 1 m")
+        raise InputError(f"{where} must be two numbers [m], not {given!r:.60}")
+    is_point = given[0] == given[1] == 0.0
+    if not is_point and not all(0.0 < x < 1.0 for x in given):
+        raise InputError(f"{where} {given} is not between 0 and 1 m, nor 0, 0 of a point foot")
     return float(given[0]), float(given[1])
+
+
+def _half_sizes_to_json(problem: ContactProblem) -> list[float] | dict[str, list[float]]:
+    """Return one pair where all effectors have it, as in files before, else one pair for each.
+
+    One key holds both forms: an earlier version refuses the second one, but would skip a new key.
+    """
+    sizes = {name: list(problem.half_sizes[name]) for name in problem.effectors}
+    first = next(iter(sizes.values()))
+    return first if all(each == first for each in sizes.values()) else sizes
 
 
 def _parts(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> dict[str, str]:

@@ -27,6 +27,7 @@ class Foothold:
         yaw: heading [rad].
         time: time at which the foot lands [s].
         until: time at which the same foot leaves [s]; infinity for the last foothold.
+        half_size: half length and half width of the sole [m].
     """
 
     limb: str
@@ -34,6 +35,7 @@ class Foothold:
     yaw: float
     time: float
     until: float
+    half_size: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,6 @@ class Clip:
         yaw: headings [rad], unwrapped.
         valid: whether each configuration is valid.
         footholds: footholds in order of time; empty for a guide path.
-        half_size: half sizes of a sole [m].
         robot: name of the robot that moves; None where the file does not say.
     """
 
@@ -57,7 +58,6 @@ class Clip:
     yaw: Float[np.ndarray, " T"]
     valid: Bool[np.ndarray, " T"]
     footholds: tuple[Foothold, ...] = ()
-    half_size: tuple[float, float] = (0.1, 0.06)
     robot: str | None = None
 
     @property
@@ -124,7 +124,8 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
     for index, (foot, point, yaw, time) in enumerate(landings):
         leaves = [later[3] for later in landings[index + 1 :] if later[0] == foot]
         limb = LIMB_OF_FOOT.get(foot, foot)
-        footholds.append(Foothold(limb, np.asarray(point), yaw, time, min(leaves, default=np.inf)))
+        until, size = min(leaves, default=np.inf), problem.half_sizes[foot]
+        footholds.append(Foothold(limb, np.asarray(point), yaw, time, until, size))
     phases = [phase for phase in problem.phases[: max(len(made), 1)] if phase.root is not None]
     known = len(phases) == max(len(made), 1)
     count = len(made) + 1
@@ -138,6 +139,5 @@ def plan_clip(name: str, problem: ContactProblem, plan: ContactPlan) -> Clip:
         yaws[hold] if known else yaws,
         np.ones(count, bool),
         tuple(footholds),
-        problem.foot_half_size,
         problem.robot,
     )

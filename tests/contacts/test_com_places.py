@@ -26,7 +26,8 @@ def judged(seed: int):
     rng = np.random.default_rng(seed)
     displacements = rng.uniform([-0.4, -0.4, -0.25], [0.4, 0.4, 0.25], (len(steps), 3))
     turns = np.broadcast_to(rotation(0.0), (len(steps), 2, 3, 3))
-    return steps, displacements, *place_coms(steps, displacements, asked.foot_half_size, turns)
+    half_sizes = np.broadcast_to(asked.half_sizes["LF"], (len(steps), 2, 2))
+    return steps, displacements, *place_coms(steps, displacements, half_sizes, turns)
 
 
 @pytest.mark.parametrize("alone", [True, False], ids=["small programs", "HiGHS"])

@@ -74,7 +74,7 @@ def twin(described: dict) -> bool:
                 reach = sets[f"{foot}_in_{other}"]
                 relate(9 * k, other, np.array(reach["A"], float), reach["b"])
                 sole = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], float)
-                half = np.repeat(described["foot_half_size"], 2)
+                sizes = described["foot_half_size"]
                 for number, over in ((0, other), (1, foot)):
                     column = 9 * k + 3 + 3 * number
                     for each in (other, foot):
@@ -82,7 +82,8 @@ def twin(described: dict) -> bool:
                         before, last[foot] = last[foot], k if each == foot else last[foot]
                         relate(column, each, np.array(com["A"], float), com["b"])
                         if each == over:
-                            relate(column, each, sole, half)
+                            size = sizes[each] if isinstance(sizes, dict) else sizes
+                            relate(column, each, sole, np.repeat(size, 2))
                         last[foot] = before
             last[foot] = k
         answer = linprog(

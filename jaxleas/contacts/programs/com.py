@@ -69,7 +69,7 @@ def _com_corners(problem: ContactProblem, name: str, over: bool) -> np.ndarray:
     polytope = problem.polytopes.com[name]
     if not over:
         return polytope.vertices
-    return _corners_over(polytope, problem.foot_half_size)
+    return _corners_over(polytope, problem.half_sizes[name])
 
 
 @cache

@@ -42,7 +42,7 @@ class _Asked:
 def place_coms(
     steps: list[Step],
     displacements: Float[np.ndarray, "n 3"],
-    half_size: tuple[float, float],
+    half_sizes: Float[np.ndarray, "n 2 2"],
     turns: Float[np.ndarray, "n 2 3 3"],
 ) -> tuple[Float[np.ndarray, "n 2 3"], dict[int, list[Cut]]]:
     """Return places for c_k0 and c_k1, relative to the standing foot, and the cuts of some steps.
@@ -50,7 +50,7 @@ def place_coms(
     Args:
         steps: steps with their `com`.
         displacements: displacement of each landing foot from the standing one [m].
-        half_size: half length and half width of the sole [m].
+        half_sizes: half length and half width of the standing and of the landing sole [m].
         turns: rotations of the standing and of the landing foot.
 
     Returns:
@@ -58,7 +58,8 @@ def place_coms(
     """
     asked = _assemble(steps, displacements)
     middles = np.stack([0.0 * displacements, displacements], axis=1).reshape(-1, 3)
-    places, found = _over_soles(asked, middles[:, :2], half_size, turns.reshape(-1, 3, 3))
+    soles = half_sizes.reshape(-1, 1, 2)
+    places, found = _over_soles(asked, middles[:, :2], soles, turns.reshape(-1, 3, 3))
     cuts: dict[int, list[Cut]] = {}
     open_ = np.flatnonzero(~found)
     if len(open_):
@@ -85,10 +86,10 @@ def _assemble(steps: list[Step], displacements: np.ndarray) -> _Asked:
 
 
 def _over_soles(
-    asked: _Asked, middles: np.ndarray, half_size: tuple[float, float], turns: np.ndarray
+    asked: _Asked, middles: np.ndarray, half_sizes: np.ndarray, turns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the place over each sole, of 25, with most vertical room, and whether it is valid."""
-    points = (_OVER_SOLE * half_size) @ turns[:, :2, :2].transpose(0, 2, 1) + middles[:, None]
+    points = (_OVER_SOLE * half_sizes) @ turns[:, :2, :2].transpose(0, 2, 1) + middles[:, None]
     slack = asked.b[:, :, None] - asked.A[:, :, :2] @ points.transpose(0, 2, 1)
     slope = asked.A[:, :, 2, None]
     level = np.abs(slope) <= _FLAT

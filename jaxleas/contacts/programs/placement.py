@@ -97,7 +97,10 @@ def put_com(
         return None, steps, 0
     stood = np.array([standing_point(problem, step.link, footholds) for step in steps])
     turns = np.array([[rotation(yaw) for yaw in yaws] for yaws in foot_yaws(problem, steps)])
-    places, cuts = place_coms(steps, footholds - stood, problem.foot_half_size, turns)
+    half_sizes = np.array(
+        [[problem.half_sizes[name] for name in (step.link.effector, step.foot)] for step in steps]
+    )
+    places, cuts = place_coms(steps, footholds - stood, half_sizes, turns)
     steps = list(steps)
     for index, found in cuts.items():
         normals, bounds = zip(*found, strict=True)

@@ -136,12 +136,12 @@ def _com(
 ) -> tuple[HalfSpaces, HalfSpaces]:
     """Return where c may be from each foot; it lies over foot number `over`."""
     sole = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
-    sides = np.repeat(problem.foot_half_size, 2) + more.get("com_over", 0.0)
     sets = []
     for number, (name, turn) in enumerate(feet):
         reach = problem.polytopes.com[name]
         A, b = reach.normals, reach.offsets + more.get("com_reach", 0.0)
         if number == over:
+            sides = np.repeat(problem.half_sizes[name], 2) + more.get("com_over", 0.0)
             A, b = np.concatenate([A, sole]), np.concatenate([b, sides])
         sets.append(HalfSpaces(A @ turn.T, b))
     return sets[0], sets[1]
