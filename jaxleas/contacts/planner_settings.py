@@ -1,6 +1,6 @@
 """A planner's settings: selected from the given ones, and checked."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -40,6 +40,28 @@ def settings_from(planner: Planner | str, **given: Any) -> Any:
     """
     found = find_planner(planner) if isinstance(planner, str) else planner
     return _made(found.name, found.settings, given, lambda each: each.settings)
+
+
+def stored_settings(planner: Planner | str, stored: Mapping[str, Any]) -> Any:
+    """Return settings that a file of labels or of a surrogate has stored.
+
+    A file stores all settings, also those that nobody stated: a value that is the default counts as
+    not stated, so that it does not bind a robot which the default does not fit.
+
+    Args:
+        planner: planner, or name of a built-in one.
+        stored: settings by name.
+
+    Raises:
+        InputError: the planner has no such setting, or the value is out of range.
+    """
+    found = find_planner(planner) if isinstance(planner, str) else planner
+    default = found.settings().model_dump(mode="json")
+    missing = object()
+    return settings_from(
+        found,
+        **{name: each for name, each in stored.items() if default.get(name, missing) != each},
+    )
 
 
 def plan_settings_from(planner: Planner, **given: Any) -> Any:

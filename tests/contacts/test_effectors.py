@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -19,11 +20,12 @@ from jaxleas.contacts import (
     stances_of,
     write_problem,
 )
+from jaxleas.contacts.planner_settings import stored_settings
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import parse_problem
 from jaxleas.contacts.stances import contact_pose
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import read_verdicts
+from jaxleas.labels import MipSettings, Sl1mSettings, judge, read_verdicts
 from jaxleas.robots import write_robot
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.types import Contact, InputError, RootPose, Stance
@@ -218,6 +220,32 @@ def test_a_three_legged_robot_is_labelled_by_its_name(here) -> None:
     assert (first.success, second.success) == (True, False)
     with pytest.raises(InputError, match="tripod"):
         cli.run([*line.split(), *["--planner", "sampling", "--out", "others"]])
+
+
+@pytest.mark.parametrize("kind", [MipSettings, Sl1mSettings])
+def test_a_stated_first_foot_that_the_robot_lacks_is_refused_but_the_default_is_not(
+    here, kind
+) -> None:
+    name = "mip" if kind is MipSettings else "sl1m"
+    scene, options = Scene({"floor": FLOOR}), {"model": "feet", "keep_every": 5}
+    ask = lambda settings: judge(name, scene, [guide()], settings, robot="tripod")  # noqa: E731
+    assert ask(kind(**options))[0].success
+    with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
+        ask(kind(**options, first_foot="LF"))
+    copied = pickle.loads(pickle.dumps(kind(**options, first_foot="LF")))  # as a worker gets it
+    with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
+        ask(copied.model_copy(update={"keep_every": 6}))
+
+
+def test_stored_settings_state_only_what_is_not_the_default(here) -> None:
+    given = MipSettings(model="feet", keep_every=5)
+    stored = json.loads(json.dumps(given.model_dump(mode="json")))
+    after = stored_settings("mip", stored)
+    assert after == given
+    verdicts = judge("mip", Scene({"floor": FLOOR}), [guide()], after, robot="tripod")
+    assert verdicts[0].success
+    with pytest.raises(InputError, match="--samples is for the planner sampling, not for mip"):
+        stored_settings("mip", {**stored, "samples": 500})
 
 
 def palm_on_the_wall() -> tuple[Stance, Scene]:

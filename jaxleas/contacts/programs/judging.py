@@ -128,13 +128,10 @@ def _problem(
 
 
 def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
-    """Return the foot that moves first: of a robot without the default one, its first foot."""
-    names = [each.name for each in load_robot(robot).effectors]
-    return settings.first_foot if settings.first_foot in names or _is_set(settings) else None
-
-
-def _is_set(settings: PhaseSettings) -> bool:
-    return settings.first_foot != type(settings).model_fields["first_foot"].default
+    """Return the foot that moves first; None for the robot's first, where it lacks the default."""
+    is_stated = "first_foot" in settings.model_fields_set
+    has_foot = settings.first_foot in load_robot(robot).foot_names
+    return settings.first_foot if is_stated or has_foot else None
 
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
