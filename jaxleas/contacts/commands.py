@@ -6,6 +6,7 @@ from typing import Any
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
 from jaxleas.contacts.from_guide import Candidates, problem_from_guide
+from jaxleas.contacts.models import model_note
 from jaxleas.contacts.outcome import draw, write_outcome
 from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide, Planner
@@ -129,7 +130,8 @@ def contacts(
         problem: file to write the contact problem to, too, .json.
         query: number of the path in the file.
         robot: robot whose step polytopes are used.
-        model: two_com (with the centre of mass, the default) or feet.
+        model: two_com (with the centre of mass) or feet; by default two_com where the robot has two
+            feet and step polytopes of its centre of mass.
         every: keep every N-th configuration; by default the planner's own number.
         candidates: surfaces in a window around the root (the default), or in the moving leg's
             range of motion (rom).
@@ -157,6 +159,8 @@ def contacts(
     settings = plan_settings_from(found, **given)
     followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
     made = _problem(found, followed, every, options)
+    if note := model_note(model, robot):
+        print(note)
     if problem is not None:
         write_problem(problem, made)
     return write_outcome(found.plan(made, settings, time_limit=time_limit), made, out, picture)

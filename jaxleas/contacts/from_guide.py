@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.contacts.models import default_model
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
 from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Phase
 from jaxleas.contacts.programs.steps import rotation
@@ -50,7 +51,7 @@ def problem_from_guide(
     scene: Scene,
     *,
     robot: str = "talos",
-    model: Model = "two_com",
+    model: Model | None = None,
     every: int = EVERY,
     candidates: Candidates = "window",
     window: float = WINDOW,
@@ -66,7 +67,8 @@ def problem_from_guide(
         guide: guide path to follow.
         scene: scene whose surfaces the guide crosses.
         robot: name of the robot.
-        model: "two_com" or "feet".
+        model: "two_com" or "feet"; by default "two_com" for two feet with polytopes of the centre
+            of mass, and "feet" for any others.
         every: number N: every N-th configuration is kept.
         candidates: "window": parts of surfaces in a square around the root, turned with it; "rom":
             parts of surfaces in the range of motion of the leg that moves.
@@ -108,13 +110,14 @@ def problem_from_guide(
                 guide.position[index],
             )
         )
+    reach = load_step_polytopes(robot) if polytopes is None else polytopes
     return ContactProblem(
         robot=robot,
-        model=model,
+        model=model or default_model(feet, reach.com),
         surfaces=surfaces,
         initial=initial,
         phases=tuple(phases),
-        polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
+        polytopes=reach,
         half_sizes={foot: described.effector(foot).half_size for foot in feet},
         parts=parts,
     )

@@ -12,20 +12,27 @@ from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.types.errors import InputError
 
 
-def require_settings(planner: Planner, settings: PlannerSettings | None) -> PlannerSettings:
-    """Return the settings given, if they are the planner's own, or the planner's defaults.
+def require_settings(
+    planner: Planner, settings: PlannerSettings | None, robot: str
+) -> PlannerSettings:
+    """Return the settings that a planner judges a robot's guide paths by, every one stated.
+
+    Args:
+        planner: planner that judges.
+        settings: settings to use; the planner's defaults if None.
+        robot: name of the robot.
 
     Raises:
-        InputError: the settings are another planner's.
+        InputError: the settings are another planner's, or there is no such robot.
     """
     kind = planner.settings
     if settings is None:
-        return kind()
+        return kind().for_robot(robot)
     if type(settings) is not kind:
         raise InputError(
             f"the {planner.name} planner takes {kind.__name__}, not {type(settings).__name__}"
         )
-    return settings
+    return settings.for_robot(robot)
 
 
 def settings_from(planner: Planner | str, **given: Any) -> Any:

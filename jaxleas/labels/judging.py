@@ -75,7 +75,7 @@ class Judge:
         """
         found = find_planner(planner, [planner])
         self.planner, self.robot, self._grain = planner, robot, found.grain
-        self.settings = require_settings(found, settings)
+        self.settings = require_settings(found, settings, robot)
         self._workers = workers or planner_workers(processes)
 
     def judge(

@@ -72,4 +72,4 @@ def ask(planner: str, asked: AskedGuides, settings: PlannerSettings | None = Non
         Verdicts in the order of the guide paths.
     """
     found = find_planner(planner, [planner])
-    return found.judge(asked, require_settings(found, settings))
+    return found.judge(asked, require_settings(found, settings, asked.robot))

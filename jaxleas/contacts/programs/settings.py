@@ -1,11 +1,12 @@
 """Settings of the programs: how a guide becomes a problem, and how one problem is planned."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from jaxleas.configuration.strict import Strict
 from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
+from jaxleas.contacts.models import default_model_of, model_note
 from jaxleas.contacts.problem import Model
 from jaxleas.contacts.programs.attempt import MAX_COMBINATIONS
 from jaxleas.contacts.programs.slack_weights import SlackWeights
@@ -19,8 +20,9 @@ class PhaseSettings(PlannerSettings):
 
     keep_every: PositiveInt = EVERY
     """one guide configuration in so many becomes a step, N_ref"""
-    model: Model = "two_com"
-    """two_com (with the centre of mass) or feet"""
+    model: Model | None = None
+    """two_com, with the centre of mass, or feet; by default two_com for a robot with two feet and
+    step polytopes of its centre of mass, and feet for any other"""
     candidates: Candidates = "window"
     """surfaces in a window around the root, or in the moving leg's range of motion"""
     window: Annotated[float, Field(gt=0.0, lt=100.0)] = WINDOW
@@ -29,6 +31,16 @@ class PhaseSettings(PlannerSettings):
     """which moves first; robots without a foot LF begin with their first one by default"""
     time_limit: PositiveFloat = 60.0
     """for one guide path [s]; when it is over, the verdict is undecided"""
+
+    def for_robot(self, robot: str) -> Self:
+        """Return the settings with a model stated."""
+        if self.model is not None:
+            return self
+        return self.model_copy(update={"model": default_model_of(robot)})
+
+    def note_for(self, robot: str) -> str:
+        """Return a line on why the model is feet, where nobody stated it."""
+        return model_note(self.model, robot)
 
 
 class MipSettings(PhaseSettings):
