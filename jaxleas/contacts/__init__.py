@@ -9,7 +9,7 @@ from jaxleas.contacts.planner import PlannerError
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Phase, Step
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.programs.prefix import last_feasible_phase
@@ -29,6 +29,7 @@ __all__ = [
     "PlannerError",
     "Posture",
     "StanceCertificate",
+    "Step",
     "StepPolytopes",
     "Violation",
     "certify",

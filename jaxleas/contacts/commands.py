@@ -7,8 +7,8 @@ from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
 from jaxleas.contacts.from_guide import Candidates, problem_from_guide
 from jaxleas.contacts.models import model_note
-from jaxleas.contacts.outcome import draw, write_outcome
 from jaxleas.contacts.plan import ContactPlan, read_plan
+from jaxleas.contacts.plan_report import draw, report_plan
 from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide, Planner
 from jaxleas.contacts.planner_settings import plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
@@ -34,12 +34,12 @@ def plan(
 
     Args:
         problem: the contact problem, .json.
-        planner: planner to use; one that follows guide paths walks along the roots of the phases.
+        planner: planner to use; one that follows guide paths walks along the roots of the steps.
         out: the plan, .json; without footholds, but with the reason, when there is no plan.
         time_limit: time limit [s]; a plan not found in time has the status time_limit.
         cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
             quadratic distance; none by default.
-        without_guide: allow every surface in every phase but the last.
+        without_guide: allow every surface in every step but the last.
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
@@ -52,11 +52,11 @@ def plan(
     if found.needs == "guide":
         followed = along_roots(asked)
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return write_outcome(answer, followed, out, picture)
+        return report_plan(answer, followed, out, picture)
     if without_guide:
         asked = asked.without_guide()
     answer = found.plan(asked, settings, time_limit=time_limit)
-    return write_outcome(answer, asked, out, picture)
+    return report_plan(answer, asked, out, picture)
 
 
 def check(
@@ -96,10 +96,10 @@ def check(
     worst = certify(asked, read)
     if picture is not None:
         draw(picture, asked, read)
-    verdict = f"{worst.constraint}, phase {worst.phase}: {worst.metres:.3g} m"
+    verdict = f"{worst.constraint}, step {worst.step}: {worst.metres:.3g} m"
     if not worst.certified:
         raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
-    print(f"{plan} is certified: {len(asked)} phases, nothing violated (tightest: {verdict})")
+    print(f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {verdict})")
 
 
 def contacts(
@@ -155,7 +155,7 @@ def contacts(
         settings = plan_settings_from(found, keep_every=every, **given)
         followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return write_outcome(answer, followed, out, picture)
+        return report_plan(answer, followed, out, picture)
     settings = plan_settings_from(found, **given)
     followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
     made = _problem(found, followed, every, options)
@@ -163,7 +163,7 @@ def contacts(
         print(note)
     if problem is not None:
         write_problem(problem, made)
-    return write_outcome(found.plan(made, settings, time_limit=time_limit), made, out, picture)
+    return report_plan(found.plan(made, settings, time_limit=time_limit), made, out, picture)
 
 
 def _problem(

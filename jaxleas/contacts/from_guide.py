@@ -8,8 +8,8 @@ from jaxtyping import Float
 
 from jaxleas.contacts.models import default_model
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
-from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Phase
-from jaxleas.contacts.programs.steps import rotation
+from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Step
+from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
@@ -35,15 +35,15 @@ class NoGroundError(InputError):
     """The scene has nothing to stand on at one of the kept configurations.
 
     Attributes:
-        phase: phase that finds no candidate; -1 if the feet have no place to start from.
+        step: step that finds no candidate; -1 if the feet have no place to start from.
     """
 
-    def __init__(self, message: str, phase: int) -> None:
+    def __init__(self, message: str, step: int) -> None:
         super().__init__(message)
-        self.phase = phase
+        self.step = step
 
     def __reduce__(self) -> tuple:
-        return type(self), (str(self), self.phase)
+        return type(self), (str(self), self.step)
 
 
 def problem_from_guide(
@@ -90,20 +90,20 @@ def problem_from_guide(
     }
     initial = _initial(guide, surfaces, described)
     finder = _Finder(surfaces, described, window, candidates)
-    phases, parts = [], {}
+    steps, parts = [], {}
     for index in kept_configurations(len(guide), every):
-        foot = feet[(turn + len(phases)) % len(feet)]
+        foot = feet[(turn + len(steps)) % len(feet)]
         found = finder.find(guide.position[index], float(guide.yaw[index]), foot)
         if not found:
             x, y, z = guide.position[index]
             raise NoGroundError(
                 f"the guide leaves the scene: around configuration {index}, with its root at"
                 f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}",
-                len(phases),
+                len(steps),
             )
-        names = [_add(surfaces, parts, len(phases), *each) for each in found]
-        phases.append(
-            Phase(
+        names = [_add(surfaces, parts, len(steps), *each) for each in found]
+        steps.append(
+            Step(
                 foot,
                 float(wrap_angle_on_host(guide.yaw[index])),
                 tuple(names),
@@ -116,7 +116,7 @@ def problem_from_guide(
         model=model or default_model(feet, reach.com),
         surfaces=surfaces,
         initial=initial,
-        phases=tuple(phases),
+        steps=tuple(steps),
         polytopes=reach,
         half_sizes={foot: described.effector(foot).half_size for foot in feet},
         parts=parts,
@@ -124,7 +124,7 @@ def problem_from_guide(
 
 
 def kept_configurations(length: int, every: int) -> list[int]:
-    """Return the configurations of a guide that phases are made of: every N-th, and the last.
+    """Return the configurations of a guide that steps are made of: every N-th, and the last.
 
     Args:
         length: number of configurations of the guide.
@@ -136,14 +136,14 @@ def kept_configurations(length: int, every: int) -> list[int]:
 def _add(
     surfaces: dict[str, ContactSurface],
     parts: dict[str, str],
-    phase: int,
+    step: int,
     whole: str,
     part: ContactSurface | None,
 ) -> str:
     """Add the part of a surface that is a candidate, unless it is the whole; return its name."""
     if part is None:
         return whole
-    name = f"{whole}@{phase}"
+    name = f"{whole}@{step}"
     while name in surfaces:  # a scene itself may use such names
         name += "'"
     surfaces[name], parts[name] = part, whole

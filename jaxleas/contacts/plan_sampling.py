@@ -11,7 +11,7 @@ from jaxleas.contacts.planner import PlannerError, require_time_limit
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
 from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.planner import _Walk
@@ -122,8 +122,8 @@ def walked_problem(
             for name, vertices in scene.walkable.items()
         },
         initial=postures[0].feet if postures else {},
-        phases=tuple(
-            Phase(
+        steps=tuple(
+            Step(
                 each.moved,
                 each.feet[each.moved].yaw,
                 (each.surfaces[each.moved],),

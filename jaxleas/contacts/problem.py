@@ -1,4 +1,4 @@
-"""The contact problem: the effector that moves in each phase, and its surfaces (T 5.1, B.1)."""
+"""The contact problem: the effector that moves in each step, and its surfaces (T 5.1, B.1)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -29,7 +29,7 @@ class FootPose:
 
 
 @dataclass(frozen=True, eq=False)
-class Phase:
+class Step:
     """One step.
 
     Attributes:
@@ -45,17 +45,21 @@ class Phase:
     root: Float[np.ndarray, " 3"] | None = None
 
 
+Phase = Step
+"""The former name of `Step`."""
+
+
 @dataclass(frozen=True, eq=False)
 class ContactProblem:
-    """Find a foothold for each phase.
+    """Find a foothold for each step.
 
     Attributes:
         robot: name of the robot.
         model: "feet" (relative foot polytopes only) or "two_com" (T app. B: two positions of the
-            centre of mass per phase as well).
+            centre of mass per step as well).
         surfaces: surfaces by name.
-        initial: pose of each effector before the first phase, in the robot's order.
-        phases: phases in order; the candidates of the last one are the goal.
+        initial: pose of each effector before the first step, in the robot's order.
+        steps: steps in order; the candidates of the last one are the goal.
         polytopes: reach of a step and of the centre of mass.
         half_sizes: half length and half width of each effector's sole [m], by the effector's name;
             zeros for a point foot.
@@ -70,7 +74,7 @@ class ContactProblem:
     model: Model
     surfaces: dict[str, ContactSurface]
     initial: dict[str, FootPose]
-    phases: tuple[Phase, ...]
+    steps: tuple[Step, ...]
     polytopes: StepPolytopes
     half_sizes: Mapping[str, tuple[float, float]]
     parts: Mapping[str, str] = field(default_factory=dict)
@@ -97,8 +101,13 @@ class ContactProblem:
             )
 
     def __len__(self) -> int:
-        """Return the number of phases."""
-        return len(self.phases)
+        """Return the number of steps."""
+        return len(self.steps)
+
+    @property
+    def phases(self) -> "tuple[Step, ...]":
+        """The former name of `steps`, still that of the file's key."""
+        return self.steps
 
     @property
     def effectors(self) -> tuple[str, ...]:
@@ -115,21 +124,19 @@ class ContactProblem:
         return self.parts.get(name, name)
 
     def prefix(self, count: int) -> "ContactProblem":
-        """Return the problem of the first `count` phases."""
-        return replace(self, phases=self.phases[:count])
+        """Return the problem of the first `count` steps."""
+        return replace(self, steps=self.steps[:count])
 
     def with_candidates(self, candidates: "list[tuple[str, ...]]") -> "ContactProblem":
-        """Return the problem with other candidates, one tuple per phase."""
-        phases = zip(self.phases, candidates, strict=True)
-        return replace(
-            self, phases=tuple(replace(phase, candidates=names) for phase, names in phases)
-        )
+        """Return the problem with other candidates, one tuple per step."""
+        steps = zip(self.steps, candidates, strict=True)
+        return replace(self, steps=tuple(replace(step, candidates=names) for step, names in steps))
 
     def without_guide(self) -> "ContactProblem":
-        """Return the contact-before-motion problem: any whole surface for any phase but the last.
+        """Return the contact-before-motion problem: any whole surface for any step but the last.
 
-        Orientations stay those of the phases; the last phase keeps its candidates, the goal.
+        Orientations stay those of the steps; the last step keeps its candidates, the goal.
         """
         every = self.whole_surfaces
         free = [every] * (len(self) - 1)
-        return self.with_candidates([*free, self.phases[-1].candidates])
+        return self.with_candidates([*free, self.steps[-1].candidates])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
@@ -61,7 +61,7 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
         model=model,
         surfaces=surfaces,
         initial=initial,
-        phases=_phases(where, content["phases"], surfaces, tuple(initial)),
+        steps=_phases(where, content["phases"], surfaces, tuple(initial)),
         polytopes=_polytopes(where, content, model, tuple(initial)),
         half_sizes=_half_sizes(where, content, tuple(initial)),
         parts=_parts(where, content.get("parts"), surfaces),
@@ -87,12 +87,12 @@ def write_problem(path: str | Path, problem: ContactProblem) -> None:
             },
             "phases": [
                 {
-                    "foot": phase.foot,
-                    "yaw": phase.yaw,
-                    "candidates": list(phase.candidates),
-                    "root": None if phase.root is None else phase.root.tolist(),
+                    "foot": step.foot,
+                    "yaw": step.yaw,
+                    "candidates": list(step.candidates),
+                    "root": None if step.root is None else step.root.tolist(),
                 }
-                for phase in problem.phases
+                for step in problem.steps
             ],
             "polytopes": {
                 name: {"A": each.normals.tolist(), "b": each.offsets.tolist()}
@@ -173,7 +173,7 @@ def _effectors(where: str, named: list[str], robot: str) -> list[str]:
 
 def _phases(
     where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
-) -> tuple[Phase, ...]:
+) -> tuple[Step, ...]:
     if not isinstance(content, list) or not content:
         raise InputError(f"{where}: phases must be a list of at least one phase")
     if len(content) > MAX_PHASES:
@@ -186,7 +186,7 @@ def _phases(
 
 def _phase(
     where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
-) -> Phase:
+) -> Step:
     if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
         raise InputError(f"{where} must be an object with foot, yaw and candidates")
     refuse_misspelt_keys(where, content, OF_A_PHASE)
@@ -203,7 +203,7 @@ def _phase(
         if not isinstance(name, str) or name not in surfaces:
             raise InputError(f"{where}: candidate {name!r:.60} is no surface of this problem")
     root = content.get("root")
-    return Phase(
+    return Step(
         foot=content["foot"],
         yaw=_yaw(where, content["yaw"]),
         candidates=tuple(dict.fromkeys(names)),

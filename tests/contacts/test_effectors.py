@@ -59,14 +59,14 @@ def three_feet(**options) -> ContactProblem:
 @pytest.mark.parametrize("planner", [plan_mip, plan_sl1m])
 def test_a_three_legged_robot_gets_a_certified_plan(here, planner) -> None:
     asked = three_feet()
-    names = [phase.foot for phase in asked.phases]
+    names = [phase.foot for phase in asked.steps]
     assert names == [list(PLACES)[index % 3] for index in range(len(asked))]
     plan = planner(asked)
     assert plan.feasible
     assert certify(asked, plan).certified
     stances = stances_of(asked, plan)
     assert len(stances) == len(asked) + 1
-    for phase, before, after in zip(asked.phases, stances, stances[1:], strict=False):
+    for phase, before, after in zip(asked.steps, stances, stances[1:], strict=False):
         assert set(before.changed(after)) <= {phase.foot}
         assert len(after) == 3
 
@@ -122,7 +122,7 @@ def stones_for_three(seed: int) -> dict:
 
 def by_brute_force(problem: ContactProblem) -> bool:
     """Try every choice of surfaces with a linear program each, written for itself."""
-    every = [phase.candidates for phase in problem.phases]
+    every = [phase.candidates for phase in problem.steps]
     return any(_placed(problem, choice) for choice in itertools.product(*every))
 
 
@@ -132,7 +132,7 @@ def _placed(problem: ContactProblem, choice: tuple[str, ...]) -> bool:
     where: dict[str, tuple[int | None, np.ndarray]] = {
         name: (None, pose.position) for name, pose in problem.initial.items()
     }
-    for index, (phase, name) in enumerate(zip(problem.phases, choice, strict=True)):
+    for index, (phase, name) in enumerate(zip(problem.steps, choice, strict=True)):
         block = np.zeros((3, size))
         block[:, 3 * index : 3 * index + 3] = np.eye(3)
         corners = problem.surfaces[name].vertices
@@ -202,7 +202,7 @@ def test_model_and_first_foot_are_asked_of_the_robot(here) -> None:
         three_feet(model="two_com")
     with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
         three_feet(first_foot="LF")
-    assert three_feet(first_foot="H").phases[1].foot == "FL"
+    assert three_feet(first_foot="H").steps[1].foot == "FL"
 
 
 def test_a_three_legged_robot_is_labelled_by_its_name(here) -> None:

@@ -3,7 +3,7 @@ import pytest
 
 from jaxleas.contacts.from_guide import nearest_below, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
-from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.contacts.problem import ContactProblem, Step
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.files import write_npz
@@ -28,7 +28,7 @@ def scene(**surfaces) -> Scene:
     return Scene({name: np.array(each, float) for name, each in surfaces.items()})
 
 
-def allowed(made: ContactProblem, phase: Phase) -> set[str]:
+def allowed(made: ContactProblem, phase: Step) -> set[str]:
     """Return the scene's surfaces of which a part is a candidate."""
     return {made.whole(name) for name in phase.candidates}
 
@@ -39,9 +39,9 @@ FLOOR = scene(floor=rectangle(-1, 5, -1, 1))
 def test_one_step_for_each_kept_configuration() -> None:
     made = problem_from_guide(straight(2.0), FLOOR, every=10)
     assert len(made) == 10
-    assert [phase.foot for phase in made.phases] == ["LF", "RF"] * 5
-    np.testing.assert_allclose([p.root[0] for p in made.phases], np.arange(1, 11) * 0.2)
-    assert [allowed(made, phase) for phase in made.phases] == [{"floor"}] * 10
+    assert [phase.foot for phase in made.steps] == ["LF", "RF"] * 5
+    np.testing.assert_allclose([p.root[0] for p in made.steps], np.arange(1, 11) * 0.2)
+    assert [allowed(made, phase) for phase in made.steps] == [{"floor"}] * 10
     for foot, side in (("LF", 0.0848), ("RF", -0.0848)):
         np.testing.assert_allclose(made.initial[foot].position, [0.0, side, 0.0], atol=1e-12)
 
@@ -49,7 +49,7 @@ def test_one_step_for_each_kept_configuration() -> None:
 def test_the_guides_last_configuration_is_always_kept() -> None:
     made = problem_from_guide(straight(2.1), FLOOR, every=20)
     assert len(made) == 6
-    assert made.phases[-1].root[0] == pytest.approx(2.1)
+    assert made.steps[-1].root[0] == pytest.approx(2.1)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2, np.pi / 4])
@@ -68,7 +68,7 @@ def test_the_window_turns_with_the_root(yaw: float) -> None:
             }
         ),
     )
-    assert allowed(made, made.phases[-1]) == {"floor", "inside"}
+    assert allowed(made, made.steps[-1]) == {"floor", "inside"}
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2])
@@ -79,16 +79,16 @@ def test_a_candidate_is_what_lies_in_the_window(yaw: float) -> None:
     guide = straight(0.56, yaw=yaw)
     made = problem_from_guide(guide, Scene({"strip": strip, "small": small}))
     assert set(made.whole_surfaces) == {"strip", "small"}
-    assert made.phases[0].candidates[0] == "small", "all of it: its own name"
-    for index, phase in enumerate(made.phases):
+    assert made.steps[0].candidates[0] == "small", "all of it: its own name"
+    for index, phase in enumerate(made.steps):
         (part,) = [made.surfaces[n].vertices for n in phase.candidates if made.whole(n) == "strip"]
         local = (part - phase.root) @ turn
         np.testing.assert_allclose(local[:, :2].min(axis=0), [-0.4, -0.2], atol=1e-9)
         np.testing.assert_allclose(local[:, :2].max(axis=0), [0.4, 0.4], atol=1e-9)
         assert f"strip@{index}" in phase.candidates
     free = made.without_guide()
-    assert set(free.phases[0].candidates) == {"strip", "small"}
-    assert free.phases[-1].candidates == made.phases[-1].candidates
+    assert set(free.steps[0].candidates) == {"strip", "small"}
+    assert free.steps[-1].candidates == made.steps[-1].candidates
 
 
 def test_the_window_holds_the_feet_near_the_guide() -> None:
@@ -110,7 +110,7 @@ def test_a_surface_named_like_a_part_is_left_alone() -> None:
     ground = np.array(rectangle(-1, 5, -1, 1), float)
     made = problem_from_guide(straight(0.28), Scene({"a": ground, "a@0": ground - [0, 0, 0.1]}))
     assert set(made.whole_surfaces) == {"a", "a@0"}
-    assert {made.whole(name) for name in made.phases[0].candidates} == {"a", "a@0"}
+    assert {made.whole(name) for name in made.steps[0].candidates} == {"a", "a@0"}
 
 
 def test_rom_candidates_are_the_moving_legs() -> None:
@@ -120,7 +120,7 @@ def test_rom_candidates_are_the_moving_legs() -> None:
         right=rectangle(-1, 3, -0.3, -0.12),
     )
     made = problem_from_guide(straight(0.6), sides, candidates="rom")
-    for phase in made.phases:
+    for phase in made.steps:
         own, other = ("left", "right") if phase.foot == "LF" else ("right", "left")
         assert own in allowed(made, phase)
         assert other not in allowed(made, phase)

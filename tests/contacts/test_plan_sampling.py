@@ -55,7 +55,7 @@ def test_a_plan_says_where_each_step_goes(climb) -> None:
     assert len(climb.robustness) == len(climb.postures)
     assert min(climb.robustness) >= 2.0
     walked = walked_problem(climb, GUIDE, SCENE)
-    for phase, name, point in zip(walked.phases, climb.surfaces, climb.footholds, strict=True):
+    for phase, name, point in zip(walked.steps, climb.surfaces, climb.footholds, strict=True):
         assert phase.candidates == (name,)
         assert float(walked.surfaces[name].distance(point)) < 1e-9
 

@@ -198,7 +198,7 @@ def test_the_last_step_that_can_be_made(planner: str, model: str) -> None:
         assert plan.status == "infeasible"
         assert plan.last_feasible_phase == good - 1
         assert not plan.feasible
-        assert f"phase {good}" in plan.reason
+        assert f"step {good}" in plan.reason
 
 
 def test_dichotomic_search_asks_few_questions() -> None:
@@ -222,7 +222,7 @@ def test_the_reason_says_how_much_is_missing() -> None:
     )
     plan = plan_mip(problem(described))
     assert plan.last_feasible_phase == -1
-    assert "phase 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
+    assert "step 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
     assert "with at most 0.05 m more reach of the step" in plan.reason
     assert "onto 'a', which is none of its candidates" in plan.reason
 
@@ -273,8 +273,8 @@ def test_a_cost_draws_the_feet_to_the_guide(cost: str) -> None:
     for index, phase in enumerate(described["phases"]):
         phase["root"] = [0.1 + 0.2 * index, 0.02, 0.95]
     asked = problem(described)
-    targets = np.array([phase.root[:2] for phase in asked.phases])
-    side = np.where([p.foot == "LF" for p in asked.phases], 0.0848, -0.0848)
+    targets = np.array([phase.root[:2] for phase in asked.steps])
+    side = np.where([p.foot == "LF" for p in asked.steps], 0.0848, -0.0848)
     targets += np.stack([np.zeros(len(side)), side], axis=1)
 
     def distance(plan) -> float:
@@ -292,7 +292,7 @@ def test_a_cost_draws_the_feet_to_the_guide(cost: str) -> None:
 
 
 def test_a_cost_needs_a_guide() -> None:
-    with pytest.raises(InputError, match="phase 0 has no root"):
+    with pytest.raises(InputError, match="step 0 has no root"):
         plan_mip(problem(stones(0.1)), cost="linear")
 
 

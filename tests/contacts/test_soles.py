@@ -42,7 +42,7 @@ def test_the_centre_of_mass_stays_over_the_sole_of_each_foot(planner) -> None:
     plan = planner(asked)
     assert certify(asked, plan).certified
     places = {name: pose.position for name, pose in asked.initial.items()}
-    for phase, landed, coms in zip(asked.phases, plan.footholds, plan.com, strict=True):
+    for phase, landed, coms in zip(asked.steps, plan.footholds, plan.com, strict=True):
         (standing,) = set(places) - {phase.foot}
         places[phase.foot] = landed
         for com, name in zip(coms, (standing, phase.foot), strict=True):

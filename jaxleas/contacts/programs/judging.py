@@ -16,7 +16,7 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import PlannerError, mean_step
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.prefix import last_feasible_phase
-from jaxleas.contacts.programs.settings import PhaseSettings
+from jaxleas.contacts.programs.settings import ProgramSettings
 from jaxleas.contacts.reference import widest_reference
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
@@ -27,7 +27,7 @@ Program = Callable[[ContactProblem, float], ContactPlan]
 
 
 def judge_by_program(
-    asked: tuple[int, Scene, GuidePath], robot: str, settings: PhaseSettings, program: Program
+    asked: tuple[int, Scene, GuidePath], robot: str, settings: ProgramSettings, program: Program
 ) -> Verdict:
     """Ask a program about one guide path.
 
@@ -49,7 +49,7 @@ def judge_by_program(
     near = _around(robot, scene, path, settings.window)
     problem, lost = _problem(robot, near, path, settings)
     if problem is None or len(path) == 1:
-        steps = -1 if lost is not None and lost.phase < 0 else 0
+        steps = -1 if lost is not None and lost.step < 0 else 0
         reason = "" if lost is None else str(lost)
         verdict = _verdict(number, path, settings, steps, begun, None, reason)
         return replace(verdict, success=not reason)
@@ -59,7 +59,7 @@ def judge_by_program(
     if first is None:
         decided, reason = False, search.trouble
     elif not first.feasible:
-        last = last_feasible_phase(problem, search.outcome)
+        last = last_feasible_phase(problem, search.status)
         if last is None:
             decided, reason = False, search.trouble
         else:
@@ -73,7 +73,7 @@ def judge_by_program(
 class _Search:
     """Plans for various prefixes of a problem, within one time limit.
 
-    `made` counts the phases of the longest prefix that has a certified plan.
+    `made` counts the steps of the longest prefix that has a certified plan.
     """
 
     def __init__(
@@ -83,11 +83,11 @@ class _Search:
         self.deadline, self.time_limit = begun + time_limit, time_limit
         self.made, self.trouble = 0, ""
 
-    def plan(self, phases: int) -> ContactPlan | None:
-        """Plan for the first phases; return None, and set `trouble`, if that is not decided."""
+    def plan(self, steps: int) -> ContactPlan | None:
+        """Plan for the first steps; return None, and set `trouble`, if that is not decided."""
         left = max(self.deadline - time.perf_counter(), 1e-3)
         try:
-            plan = self.program(self.problem.prefix(phases), left)
+            plan = self.program(self.problem.prefix(steps), left)
         except PlannerError as error:
             self.trouble = f"the planner failed: {error}"
             return None
@@ -95,17 +95,17 @@ class _Search:
             self.trouble = f"not decided within the time limit of {self.time_limit:g} s"
             return None
         if plan.feasible:
-            self.made = max(self.made, phases)
+            self.made = max(self.made, steps)
         return plan
 
-    def outcome(self, prefix: ContactProblem) -> str:
+    def status(self, prefix: ContactProblem) -> str:
         """Answer one question of the binary search."""
         plan = self.plan(len(prefix))
         return "failed" if plan is None else "optimal" if plan.feasible else "infeasible"
 
 
 def _problem(
-    robot: str, scene: Scene, path: GuidePath, settings: PhaseSettings
+    robot: str, scene: Scene, path: GuidePath, settings: ProgramSettings
 ) -> tuple[ContactProblem | None, NoGroundError | None]:
     """Return the problem of the part of the path that has ground, and the error that ends it."""
     options = {
@@ -121,13 +121,13 @@ def _problem(
             path = path[np.array([0, 0])]
         return problem_from_guide(path, scene, **options), None
     except NoGroundError as error:
-        if error.phase < 1:
+        if error.step < 1:
             return None, error
-        last = kept_configurations(len(path), settings.keep_every)[error.phase - 1]
+        last = kept_configurations(len(path), settings.keep_every)[error.step - 1]
         return problem_from_guide(path[: last + 1], scene, **options), error
 
 
-def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
+def _first_foot(robot: str, settings: ProgramSettings) -> str | None:
     """Return the foot that moves first; None for the robot's first, where it lacks the default."""
     is_stated = "first_foot" in settings.model_fields_set
     has_foot = settings.first_foot in load_robot(robot).foot_names
@@ -149,18 +149,18 @@ def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     return Scene(near or scene.walkable, touch=dict.fromkeys(near or scene.walkable, "feet"))
 
 
-def _reason(problem: ContactProblem, phase: int, plan: ContactPlan) -> str:
-    step = problem.phases[phase]
+def _reason(problem: ContactProblem, number: int, plan: ContactPlan) -> str:
+    step = problem.steps[number]
     names = ", ".join(f"'{name}'" for name in step.candidates[:4])
     more = f" and {len(step.candidates) - 4} more" if len(step.candidates) > 4 else ""
     proof = "" if plan.status == "infeasible" else f" ({plan.reason})"
-    return f"step {phase} ({step.foot} onto {names}{more}) is the first not made{proof}"
+    return f"step {number} ({step.foot} onto {names}{more}) is the first not made{proof}"
 
 
 def _verdict(
     number: int,
     path: GuidePath,
-    settings: PhaseSettings,
+    settings: ProgramSettings,
     steps: int,
     begun: float,
     plan: ContactPlan | None,

@@ -15,7 +15,7 @@ from jaxleas.contacts.settings import PlannerSettings
 Cost = Literal["none", "linear", "quadratic"]
 
 
-class PhaseSettings(PlannerSettings):
+class ProgramSettings(PlannerSettings):
     """How a guide path becomes a contact problem (T 5.2.3), and how long a planner may take."""
 
     keep_every: PositiveInt = EVERY
@@ -43,11 +43,11 @@ class PhaseSettings(PlannerSettings):
         return model_note(self.model, robot)
 
 
-class MipSettings(PhaseSettings):
+class MipSettings(ProgramSettings):
     """Settings of the mixed-integer planner."""
 
 
-class Sl1mSettings(PhaseSettings):
+class Sl1mSettings(ProgramSettings):
     """Settings of SL1M."""
 
     max_combinations: NonNegativeInt = MAX_COMBINATIONS
