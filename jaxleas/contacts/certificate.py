@@ -135,11 +135,11 @@ def _require_fitting(problem: ContactProblem, plan: ContactPlan) -> Float[np.nda
     for index, (name, step) in enumerate(zip(plan.surfaces, problem.steps, strict=True)):
         if name not in step.candidates:
             raise InputError(
-                f"step {index} of the plan stands on '{name}', which is none of the problem's"
+                f"step {index} of the plan stands on '{name}', which is not among the problem's"
                 f" candidates there: {', '.join(step.candidates)}"
             )
     if problem.model == "two_com" and (plan.com is None or plan.com.shape != (count, 2, 3)):
-        raise InputError("the plan lacks 'com', two positions a step, which model two_com needs")
+        raise InputError("the plan lacks 'com', two positions per step, which model two_com needs")
     numbers = [plan.footholds] if plan.com is None else [plan.footholds, plan.com]
     if not all(np.isfinite(each).all() for each in numbers):
         raise InputError("the plan holds a number that is not finite")

@@ -149,7 +149,7 @@ def contacts(
     options = {"model": model, "candidates": candidates, "window": window}
     given = {"cost": _wanted(cost), "max_combinations": max_combinations}
     if every is not None and every < 1:
-        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
+        raise InputError(f"every {every} must be at least 1: every N-th configuration is kept")
     if found.needs == "guide":
         _require_own_contacts(found, problem=problem, **options, cost=given["cost"])
         settings = plan_settings_from(found, keep_every=every, **given)

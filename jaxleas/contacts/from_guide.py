@@ -256,7 +256,7 @@ def _first(robot: Robot, feet: tuple[str, ...], first_foot: str | None) -> int:
 
 def _require_usable(guide: GuidePath, every: int, window: float) -> None:
     if every < 1:
-        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
+        raise InputError(f"every {every} must be at least 1: every N-th configuration is kept")
     if not 0.0 < window < 100.0:
         raise InputError(f"window {window} must be an edge in metres, 0.8 is usual")
     if len(guide) < 2:

@@ -12,7 +12,8 @@ from jaxleas.contacts.surfaces import ContactSurface
 from jaxleas.types.errors import InputError
 
 Model = Literal["two_com", "feet"]
-TWO = 2  # effectors that the model two_com knows: the centre of mass is over one, then the other
+TWO = 2
+"""Number of effectors in the model two_com: the centre of mass is over one, then the other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +31,10 @@ class FootPose:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One step.
+    """The landing of one effector while the others stand.
 
     Attributes:
-        foot: name of the effector that moves, such as "LF"; the others stand.
+        foot: name of the effector that moves, such as "LF".
         yaw: heading with which it lands [rad].
         candidates: names of the surfaces it may land on.
         root: position of the guide path's root, in the world [m]; None if there is no guide.

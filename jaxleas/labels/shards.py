@@ -57,7 +57,7 @@ class Shard:
     """A run of guide paths of one file, judged together.
 
     Attributes:
-        asked: what is asked about them.
+        asked: question that is put about them.
         first: number of the first guide path.
         last: number after the last guide path.
         out: verdict file.

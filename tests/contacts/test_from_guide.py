@@ -103,7 +103,7 @@ def test_the_window_holds_the_feet_near_the_guide() -> None:
     plan = plan_mip(problem_from_guide(guide, aside, every=30, window=0.8))
     assert (plan.status, plan.last_feasible_phase) == ("infeasible", -1)
     assert "LF onto 'ahead'" in plan.reason
-    assert "which is none of its candidates" in plan.reason
+    assert "which is not among its candidates" in plan.reason
 
 
 def test_a_surface_named_like_a_part_is_left_alone() -> None:

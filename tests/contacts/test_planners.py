@@ -224,7 +224,7 @@ def test_the_reason_says_how_much_is_missing() -> None:
     assert plan.last_feasible_phase == -1
     assert "step 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
     assert "with at most 0.05 m more reach of the step" in plan.reason
-    assert "onto 'a', which is none of its candidates" in plan.reason
+    assert "onto 'a', which is not among its candidates" in plan.reason
 
 
 @pytest.mark.parametrize(

@@ -58,7 +58,7 @@ def explain(problem: ContactProblem, step: int, deadline: float = np.inf) -> str
     if blame.surface in allowed:
         helps.append(f"onto another part of '{blame.surface}' than its candidate")
     elif blame.surface:
-        helps.append(f"onto '{blame.surface}', which is none of its candidates")
+        helps.append(f"onto '{blame.surface}', which is not among its candidates")
     sentence = f"step {step} ({failing.foot} onto {where}) is the first step that cannot be made"
     end = "" if blame.in_time else "; the time ran out before all that would help was found"
     if helps:
