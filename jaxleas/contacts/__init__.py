@@ -1,7 +1,7 @@
 """Contact problems, their exact planners (mixed-integer, SL1M, sampling) and certificates."""
 
 from jaxleas.contacts.certificate import Violation, certify
-from jaxleas.contacts.from_guide import problem_from_guide
+from jaxleas.contacts.from_guide import Stepping, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
 from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
 from jaxleas.contacts.plan_sampling import plan_sampling
@@ -31,6 +31,7 @@ __all__ = [
     "StanceCertificate",
     "Step",
     "StepPolytopes",
+    "Stepping",
     "Violation",
     "certify",
     "certify_postures",

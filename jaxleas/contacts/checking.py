@@ -5,10 +5,10 @@ from pathlib import Path
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.plan_report import draw_walk
-from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide
+from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
-from jaxleas.robots import load_robot
+from jaxleas.robots import DEFAULT_ROBOT, load_robot
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError, JaxleasError
 

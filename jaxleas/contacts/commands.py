@@ -5,16 +5,17 @@ from typing import Any
 
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
-from jaxleas.contacts.from_guide import Candidates, problem_from_guide
+from jaxleas.contacts.from_guide import Candidates, Stepping, problem_from_guide
 from jaxleas.contacts.models import model_note
 from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.plan_report import draw, report_plan
-from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide, Planner
+from jaxleas.contacts.planner import AskedGuide, Planner
 from jaxleas.contacts.planner_settings import plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
+from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.types.errors import InputError
 
@@ -174,9 +175,8 @@ def _problem(
     return problem_from_guide(
         asked.guide,
         asked.scene,
-        robot=asked.robot,
-        every=planner.settings().keep_every if every is None else every,
-        **chosen,
+        asked.robot,
+        Stepping(every=planner.settings().keep_every if every is None else every, **chosen),
     )
 
 

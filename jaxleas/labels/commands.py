@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT
 from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.contacts.registry import DEFAULT_JUDGE, PlannerName, find_planner
+from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from scipy.optimize import linprog
 
 from jaxleas import cli
 from jaxleas.contacts import (
+    Stepping,
     certify,
     certify_stance,
     plan_mip,
@@ -52,8 +53,8 @@ def guide(length: float = 1.2):
 
 
 def three_feet(**options) -> ContactProblem:
-    given = {"robot": "tripod", "model": "feet", "every": 5} | options
-    return problem_from_guide(guide(), Scene({"floor": FLOOR}), **given)
+    stepping = Stepping(**({"model": "feet", "every": 5} | options))
+    return problem_from_guide(guide(), Scene({"floor": FLOOR}), "tripod", stepping)
 
 
 @pytest.mark.parametrize("planner", [plan_mip, plan_sl1m])

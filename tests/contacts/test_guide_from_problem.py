@@ -19,7 +19,7 @@ def run(line: str) -> None:
 
 
 def test_the_guide_goes_through_every_root() -> None:
-    asked = problem_from_guide(straight(1.5, climbing=True), stairs())
+    asked = problem_from_guide(straight(1.5, climbing=True), stairs(), "talos")
     guide = guide_from_problem(asked)
     for phase in asked.steps:
         apart = np.linalg.norm(guide.position - phase.root, axis=1)
@@ -57,7 +57,9 @@ def test_walls_are_obstacles_and_parts_are_no_surfaces() -> None:
 
 def test_from_problem_to_plan_to_check(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
-    write_problem("stairs.json", problem_from_guide(straight(1.5, climbing=True), stairs()))
+    write_problem(
+        "stairs.json", problem_from_guide(straight(1.5, climbing=True), stairs(), "talos")
+    )
     run("plan stairs.json --planner sampling --out plan.json --picture plan.png")
     assert "sampling: feasible" in capsys.readouterr().out
     plan = read_plan("plan.json")

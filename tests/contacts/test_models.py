@@ -83,7 +83,7 @@ def test_contacts_need_no_model(here, capsys) -> None:
         with pytest.raises(InputError, match="two_com"):
             cli.run([*line.split(), "--model", "two_com"])
     scene = Scene({"floor": FLOOR})
-    assert problem_from_guide(straight(1.2), scene, robot="talos").model == "two_com"
+    assert problem_from_guide(straight(1.2), scene, "talos").model == "two_com"
     steps = load_talos().steps
     described = {
         "robot": "plain",
@@ -100,5 +100,5 @@ def test_contacts_need_no_model(here, capsys) -> None:
         },
     }
     own = parse_problem("p.json", json.loads(json.dumps(described))).polytopes
-    made = problem_from_guide(straight(1.2), scene, robot="plain", polytopes=own)
+    made = problem_from_guide(straight(1.2), scene, "plain", polytopes=own)
     assert made.model == "two_com", "polytopes that are given count, not the robot's"

@@ -41,7 +41,7 @@ def guide(aside: float = 0.0, speed: float = 0.08) -> GuidePath:
 
 @pytest.fixture(scope="module")
 def asked():
-    return problem_from_guide(guide(), Scene(TILES))
+    return problem_from_guide(guide(), Scene(TILES), "talos")
 
 
 def test_uniform_weights_are_the_published_sum(asked):
@@ -68,7 +68,7 @@ def test_the_surface_under_the_foot_weighs_as_much_as_all_the_others(asked):
 def test_what_the_guide_chooses_needs_no_combinations():
     made: dict[SlackWeights, list[bool]] = {"uniform": [], "guide": []}
     for aside in (-0.25, -0.1, 0.05):
-        asked = problem_from_guide(guide(aside), Scene(TILES))
+        asked = problem_from_guide(guide(aside), Scene(TILES), "talos")
         for weights, plans in made.items():
             plan = plan_sl1m(asked, max_combinations=1, weights=weights, diagnose=False)
             plans.append(plan.feasible)

@@ -107,7 +107,7 @@ def test_a_problem_of_a_guide_has_the_soles_of_the_robot(tmp_path) -> None:
     write_robot(tmp_path / "uneven.json", uneven())
     robot = str(tmp_path / "uneven.json")
     scene = Scene({"floor": np.array(FLOOR["floor"])})
-    asked = problem_from_guide(straight(1.0), scene, robot=robot)
+    asked = problem_from_guide(straight(1.0), scene, robot)
     assert dict(asked.half_sizes) == {"LF": (0.1, 0.06), "RF": tuple(SHORT)}
     plan = plan_mip(asked)
     assert certify(asked, plan).certified

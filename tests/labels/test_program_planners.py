@@ -49,7 +49,7 @@ def test_the_last_index_is_the_last_prefix_that_has_a_plan(planner):
     for steps in range(1, len(kept)):
         beginning = path[: kept[steps - 1] + 1]
         try:
-            problem = problem_from_guide(beginning, scene)
+            problem = problem_from_guide(beginning, scene, "talos")
         except NoGroundError:
             break
         if not plan_mip(problem, diagnose=False).feasible:

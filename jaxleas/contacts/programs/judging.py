@@ -9,6 +9,7 @@ import numpy as np
 from jaxleas.contacts.from_guide import (
     MOST_ASIDE,
     NoGroundError,
+    Stepping,
     kept_configurations,
     problem_from_guide,
 )
@@ -113,23 +114,22 @@ def _problem(
     robot: str, scene: Scene, path: GuidePath, settings: ProgramSettings
 ) -> tuple[ContactProblem | None, NoGroundError | None]:
     """Return the problem of the part of the path that has ground, and the error that ends it."""
-    options = {
-        "robot": robot,
-        "model": settings.model,
-        "every": settings.keep_every,
-        "candidates": settings.candidates,
-        "window": settings.window,
-        "first_foot": _first_foot(robot, settings),
-    }
+    stepping = Stepping(
+        model=settings.model,
+        every=settings.keep_every,
+        candidates=settings.candidates,
+        window=settings.window,
+        first_foot=_first_foot(robot, settings),
+    )
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
             path = path[np.array([0, 0])]
-        return problem_from_guide(path, scene, **options), None
+        return problem_from_guide(path, scene, robot, stepping), None
     except NoGroundError as error:
         if error.step < 1:
             return None, error
         last = kept_configurations(len(path), settings.keep_every)[error.step - 1]
-        return problem_from_guide(path[: last + 1], scene, **options), error
+        return problem_from_guide(path[: last + 1], scene, robot, stepping), error
 
 
 def _first_foot(robot: str, settings: ProgramSettings) -> str | None:
