@@ -11,7 +11,7 @@ from jaxleas.contacts.planner import PlannerError, require_time_limit
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
 from jaxleas.contacts.sampling.case import make_case
 from jaxleas.contacts.sampling.follower import GuideFollower
@@ -121,8 +121,8 @@ def problem_of_steps(
             for name, vertices in scene.walkable.items()
         },
         initial=postures[0].feet if postures else {},
-        phases=tuple(
-            Phase(
+        steps=tuple(
+            Step(
                 each.moved,
                 each.feet[each.moved].yaw,
                 (each.surfaces[each.moved],),
@@ -132,7 +132,7 @@ def problem_of_steps(
             if each.moved
         ),
         polytopes=StepPolytopes({}, {}),
-        foot_half_size=robot.foot_half_size,
+        half_sizes={each.name: each.half_size for each in robot.effectors},
     )
 
 

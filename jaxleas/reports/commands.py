@@ -1,7 +1,7 @@
 """The commands `jaxleas evaluate` and `jaxleas report`."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,6 +21,7 @@ from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_ev
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.labels import PlannerSettings
+from jaxleas.labels.settings import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
@@ -41,6 +42,7 @@ def evaluate(
     time_limit: float | None = None,
     max_combinations: int | None = None,
     slack_weights: Literal["uniform", "guide"] | None = None,
+    parameters: Sequence[str] | None = None,
     processes: int | None = None,
     pictures: Path | None = None,
     surrogate: Path | None = None,
@@ -71,6 +73,8 @@ def evaluate(
         max_combinations: most combinations that SL1M tries for what its relaxation leaves
             undecided; 0: SL1M without heuristics.
         slack_weights: weights of SL1M's slacks: uniform or guide.
+        parameters: any settings of the planners, such as model=feet; each planner takes those that
+            it has.
         processes: number of processes that plan contacts at the same time; all cores by default.
         pictures: folder for pictures of the guide paths.
         surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
@@ -83,6 +87,13 @@ def evaluate(
     plan = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
+    given = {
+        "time_limit": time_limit,
+        "max_combinations": max_combinations,
+        "weights": slack_weights,
+    }
+    named = settings_of(parameters or ())
+    settings = _settings(names, with_parameters(given, named), named)
     further = parse_policies(_words(policies) or ())
     if json is not None and json.exists():
         _require_evaluation(json)
@@ -103,11 +114,9 @@ def evaluate(
             write_evaluation(json, evaluation)
             print(f"written: {json}")
         return evaluation
-    given = {
-        "time_limit": time_limit,
-        "max_combinations": max_combinations,
-        "weights": slack_weights,
-    }
+    robot = candidate.env.config.robot
+    for note in dict.fromkeys(filter(None, (each.note_for(robot) for each in settings.values()))):
+        print(note)
     contenders = make_contenders(candidate, further, _words(methods))
     file = json
     if file is None and folder is not None:
@@ -117,11 +126,7 @@ def evaluate(
             candidate,
             contenders,
             plan,
-            Planning(
-                names,
-                {name: _settings(name, given) for name in names},
-                processes or os.cpu_count() or 1,
-            ),
+            Planning(names, settings, processes or os.cpu_count() or 1),
             file=file,
             say=reporter.say,
         )
@@ -158,11 +163,35 @@ def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _settings(planner: str, given: dict[str, Any]) -> PlannerSettings:
-    """Return a planner's settings with the given ones, as far as the planner has such settings."""
-    found = find_planner(planner, [planner])
-    known = found.settings.model_fields
-    return settings_from(found, **{name: each for name, each in given.items() if name in known})
+def _settings(
+    planners: Sequence[str], given: dict[str, Any], named: Collection[str]
+) -> dict[str, PlannerSettings]:
+    """Return the settings of each planner: those given that it has.
+
+    Args:
+        planners: names of the planners.
+        given: all settings given, by name.
+        named: names of those given as --parameters, of which a planner must have each.
+
+    Raises:
+        InputError: no planner has one of the named settings, or a value is out of range.
+    """
+    found = {name: find_planner(name, [name]) for name in planners}
+    known = {name: each.settings.model_fields for name, each in found.items()}
+    for name in named:
+        if not any(name in fields for fields in known.values()):
+            judges = (
+                f"none of the planners {', '.join(planners)} has"
+                if planners
+                else "no planner judges and has"
+            )
+            raise InputError(f"--parameters {name}: {judges} such a setting")
+    return {
+        name: settings_from(
+            each, **{key: value for key, value in given.items() if key in known[name]}
+        )
+        for name, each in found.items()
+    }
 
 
 def _words(given: Sequence[str] | None) -> list[str] | None:

@@ -111,19 +111,17 @@ class Playback:
     def _choose(self, index: int) -> None:
         self._clip, self._time = self._clips[index], 0.0
         self._server.scene.remove_by_name("/footholds")
-        half_size = (*self._clip.half_size, 0.5 * THICKNESS)
         self._feet = [
-            (foothold, self._add_foothold(f"/footholds/{number}", foothold, half_size))
+            (foothold, self._add_foothold(f"/footholds/{number}", foothold))
             for number, foothold in enumerate(self._clip.footholds)
         ]
         self._slider.value = 0.0
         self._draw()
 
-    def _add_foothold(
-        self, name: str, foothold: Foothold, half_size: tuple[float, float, float]
-    ) -> "tuple[GlbHandle, GlbHandle]":
+    def _add_foothold(self, name: str, foothold: Foothold) -> "tuple[GlbHandle, GlbHandle]":
         """Add a sole twice, both hidden: as a standing foot, and as a foothold that was left."""
-        sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
+        sizes = (*foothold.half_size, 0.5 * THICKNESS)
+        sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in sizes)))))
         colours = shade(sole, np.array(LIMBS.get(foothold.limb, OTHER_LIMB), float))
         nodes = (
             add_painted(self._server, f"{name}/standing", sole, colours),

@@ -53,10 +53,10 @@ def test_a_plan_says_where_each_step_goes(climb) -> None:
     assert [each.configuration for each in climb.postures][:: len(climb.postures) - 1] == [0, 120]
     assert len(climb.robustness) == len(climb.postures)
     assert min(climb.robustness) >= 2.0
-    steps = problem_of_steps(climb, GUIDE, SCENE)
-    for phase, name, point in zip(steps.phases, climb.surfaces, climb.footholds, strict=True):
+    made = problem_of_steps(climb, GUIDE, SCENE)
+    for phase, name, point in zip(made.steps, climb.surfaces, climb.footholds, strict=True):
         assert phase.candidates == (name,)
-        assert float(steps.surfaces[name].distance(point)) < 1e-9
+        assert float(made.surfaces[name].distance(point)) < 1e-9
 
 
 def with_postures(plan, postures: list):

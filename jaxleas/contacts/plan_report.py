@@ -13,10 +13,10 @@ FOR_PICTURE = 10.0
 """Time limit for drawing how far a failed plan could go [s]."""
 
 
-def write_outcome(
+def report_plan(
     answer: ContactPlan, asked: ContactProblem | AskedGuide, out: Path, picture: Path | None
 ) -> ContactPlan:
-    """Write a plan, draw it, and print its outcome."""
+    """Write a plan, draw it, and print what came of it."""
     write_plan(out, answer)
     if isinstance(asked, ContactProblem):
         if picture is not None:
@@ -31,21 +31,21 @@ def write_outcome(
 
 
 def describe(problem: ContactProblem, found: ContactPlan) -> str:
-    """Return a plan's outcome in one line."""
+    """Return a description of a plan in one line."""
     tried = ""
     if found.undecided is not None:
         tried = f", {found.undecided} undecided, {found.combinations} combinations"
-    timing = f"{len(problem)} phases in {1000.0 * found.seconds:.0f} ms{tried}"
+    timing = f"{len(problem)} steps in {1000.0 * found.seconds:.0f} ms{tried}"
     if found.feasible:
         return f"{found.planner}: feasible, {timing}, certified to {found.max_violation:.1g} m"
     reach = ""
     if found.last_feasible_phase is not None:
-        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} phases can be made)"
+        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} steps can be made)"
     return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
 
 
 def describe_along_guide(guide: GuidePath, found: ContactPlan) -> str:
-    """Return a sampling plan's outcome in one line."""
+    """Return a description of a sampling plan in one line."""
     postures = found.postures or ()
     steps = f"{len(found.surfaces)} steps in {1000.0 * found.seconds:.0f} ms"
     if found.robustness:
@@ -75,7 +75,7 @@ def draw_along_guide(picture: Path, found: ContactPlan, asked: AskedGuide) -> No
 
 
 def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:
-    """Plan the phases before the first that cannot be made, for a picture."""
+    """Plan the steps before the first that cannot be made, for a picture."""
     count = 0 if found.last_feasible_phase is None else found.last_feasible_phase + 1
     if found.feasible or found.planner not in PLANNERS or not 0 < count < len(problem):
         return None
