@@ -13,13 +13,12 @@ from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, wri
 from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
-from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.registry import BASELINES
+from jaxleas.guide.registry import BASELINES, LEAS
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types.errors import InputError
 
-POLICY = "leas_p1"
+POLICY = LEAS.key
 
 
 @dataclass(frozen=True)
@@ -53,11 +52,7 @@ def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidat
     """
     policy = load_policy(path)
     env = env_of(policy.config, refusal)
-    limits, speed = env.config.limits, env.config.desired_speed
-    methods = {
-        POLICY: leas(env, policy),
-        **{name: each.make(limits, speed) for name, each in BASELINES.items()},
-    }
+    methods = {each.key: each.make(env, policy) for each in (LEAS, *BASELINES.values())}
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
     return Candidate(Path(path), fingerprint, env, methods, refusal)

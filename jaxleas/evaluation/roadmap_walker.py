@@ -10,6 +10,7 @@ from jaxleas.evaluation.exact import Walker
 from jaxleas.evaluation.judge import Walk
 from jaxleas.evaluation.starts import Grounds, Starts
 from jaxleas.guide.navigation_command import make_navigator
+from jaxleas.guide.registry import Edges
 from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
 from jaxleas.guide.roadmaps.navigation import motion_at
 from jaxleas.guide.steering_method import SteeringMethod
@@ -20,13 +21,13 @@ CONNECTIONS = 200
 HOURS = 36_000.0
 
 
-def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: str) -> Walker:
+def roadmap_walker(env: SteeringEnv, method: SteeringMethod, edges: Edges) -> Walker:
     """Return a walker that uses a steering method and finds waypoints by RRT where needed.
 
     Args:
         env: environment that decides what is valid.
         method: steering method that connects waypoints.
-        steering: kind of steering method, which limits how far an edge may reach.
+        edges: edges of a roadmap that suit the method.
     """
 
     def walks(grounds: Grounds, starts: Starts, steps: int) -> Walk:
@@ -35,7 +36,7 @@ def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: str) -> W
         for number, index in enumerate(np.asarray(starts.map_index).tolist()):
             if index not in navigators:
                 places = Places(env, grounds.maps[index])
-                navigators[index] = make_navigator(places, method, steering, "rrt")
+                navigators[index] = make_navigator(places, method, edges, "rrt")
             found.append(_navigate(navigators[index], starts, number, steps))
         return stack([path for path, _ in found], np.array([each for _, each in found]), starts)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.guide.commands import steering_named
+from jaxleas.guide.registry import Edges, Method, SteeringName, find_method
 from jaxleas.terrain.reading import READING, Reading
 from jaxleas.types import InputError, RootMotion
 
@@ -24,7 +24,7 @@ def navigate(
     from_: str,
     to: str,
     terrain: Path,
-    steering: str = "leas",
+    steering: SteeringName = "leas",
     planner: Literal["rrt", "prm", "none"] = "rrt",
     policy: Path | None = None,
     limit: float = 20.0,
@@ -40,12 +40,12 @@ def navigate(
         from_: start as x,y or x,y,yaw [m, rad]; without yaw the robot faces the goal if it can.
         to: goal as x,y [m].
         terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
-            MODULE:CLASS of your own.
+        steering: steering method: leas is the policy; kino, RB-Kino, and lin, RB-Lin, know no
+            terrain.
         planner: rrt or prm search for waypoints if the direct walk to the goal fails; none = the
             direct walk only.
-        policy: a run folder, a policy.npz or an .onnx; needed for leas; if given, kino and lin use
-            its task, too.
+        policy: a run folder, a policy.npz or an .onnx, which leas needs; the other methods use its
+            task if it is given.
         limit: time after which the best partial path is written [s].
         connections: maximum number of connections that the search may try; by default as many as
             the time allows.
@@ -76,7 +76,8 @@ def navigate(
     if planner != "none":
         import_ompl()
     keep_compiled_programs()
-    env, method = _steering(steering, policy)
+    named = find_method(steering)
+    env, method = _steering(named, policy)
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
@@ -84,7 +85,7 @@ def navigate(
     scene = scene_of(terrain, reading.up, reading.scale)
     if scene is not None:
         require_exact_start(places, scene, motion)
-    navigator = make_navigator(places, method, steering, planner, scene)
+    navigator = make_navigator(places, method, named.edges, planner, scene)
     found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
     verdict = None if scene is None else judge_exactly(env.robot, scene, found.path)
     _write(out, found)
@@ -97,40 +98,32 @@ def navigate(
 def make_navigator(
     places: "Places",
     method: "SteeringMethod",
-    steering: str,
+    edges: Edges,
     planner: str,
     scene: "Scene | None" = None,
-    reach: float | None = None,
 ) -> "Navigator":
     """Return a navigator tuned for a steering method.
-
-    LEAS passes near a waypoint and avoids obstacles on the way: its edges are long, and waypoints
-    count as reached within the goal's radius. The baselines reach a waypoint exactly, and only
-    where the straight way is free: their edges are short and followed to the centimetre, because
-    the way that a cut corner takes has not been tried.
 
     Args:
         places: places of the terrain where the robot can stand.
         method: steering method.
-        steering: name of the steering method.
+        edges: edges that suit the method.
         planner: rrt, prm or none.
         scene: polygons of the terrain; the exact conditions on them judge every whole path.
-        reach: maximum length of an edge of a tree [m], instead of the tuned length.
     """
     from jaxleas.guide.roadmaps.connections import Connector
     from jaxleas.guide.roadmaps.exact import refusals
     from jaxleas.guide.roadmaps.navigation import Navigator
 
     config, robot = places.env.config, places.env.robot
-    usual, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
-    reach = usual if reach is None else reach
+    radius = config.goal_radius if edges.radius is None else edges.radius
     # A quarter more than the time of the straight way, and time to turn around.
-    straight = reach / (config.desired_speed * config.limits.time_step)
+    straight = edges.reach / (config.desired_speed * config.limits.time_step)
     turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
     steps = math.ceil(1.25 * straight + turn)
     connector = Connector(places, method, radius, steps)
     refused = None if scene is None else lambda path: np.logical_or(*refusals(robot, scene, path))
-    return Navigator(connector, planner, reach, refused)  # type: ignore[arg-type]
+    return Navigator(connector, planner, edges.reach, refused)  # type: ignore[arg-type]
 
 
 def start_motion(
@@ -172,19 +165,21 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
     return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
 
 
-def _steering(steering: str, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
+def _steering(method: Method, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
     from jaxleas.envs.steering.config import SteeringConfig
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.loading import load_policy
 
     if policy is None:
-        if steering == "leas":
-            raise InputError("--steering leas needs --policy: a run folder, a .npz or an .onnx")
+        if method.needs_policy:
+            raise InputError(
+                f"--steering {method.name} needs --policy: a run folder, a .npz or an .onnx"
+            )
         env = SteeringEnv(SteeringConfig())
-        return env, steering_named(steering, env, None)
-    walker = load_policy(policy)
-    env = SteeringEnv(walker.config)
-    return env, steering_named(steering, env, walker)
+        return env, method.make(env, None)
+    loaded = load_policy(policy)
+    env = SteeringEnv(loaded.config)
+    return env, method.make(env, loaded)
 
 
 def _write(out: Path, found: "Navigation") -> None:

@@ -20,6 +20,7 @@ from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
 from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
+from jaxleas.guide.registry import ResultName
 from jaxleas.labels import PlannerSettings
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
@@ -36,7 +37,7 @@ def evaluate(
     seed: int = 0,
     held_out: bool = False,
     planners: Sequence[PlannerName] | None = None,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[ResultName] | None = None,
     policies: Sequence[str] | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
@@ -59,12 +60,11 @@ def evaluate(
         starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
         json: file to write the result to as well; a run folder keeps the result with the most
             starts in RUN/evaluation/.
-        baseline: judge RB-Lin and RB-Kino as well.
+        baseline: judge the baselines, RB-Lin and RB-Kino, as well.
         seed: seed of scenes and starts; training never sees any of them.
         held_out: judge on terrain for choosing and tuning, not on that of evaluation.
         planners: exact planners that judge, or none; for the suite thesis all built-in ones.
-        methods: methods that stand side by side, from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the
-            further policies; by default all.
+        methods: methods that stand side by side, the further policies among them; by default all.
         policies: further policies, each as name=path.
         time_limit: time limit for one guide path, of mip and sl1m [s]; a path not decided by then
             counts as not planned.

@@ -11,7 +11,7 @@ from jaxleas.evaluation.examination import POLICY, Candidate
 from jaxleas.evaluation.result_file import CellResult, Evaluation
 from jaxleas.evaluation.stage import Stage
 from jaxleas.files import read_json, write_bytes, write_text
-from jaxleas.guide.registry import BASELINES
+from jaxleas.guide.registry import BASELINES, is_policy
 from jaxleas.reports.gallery import Picture, draw_gallery
 from jaxleas.reports.learning_curves import draw_learning_curves
 from jaxleas.reports.page import page_template
@@ -181,7 +181,7 @@ def _value(cell: CellResult | None) -> tuple[str, str]:
 
 def _ours(evaluation: Evaluation) -> list[CellResult]:
     """Return the cells of the policy itself."""
-    return [cell for cell in evaluation.cells if cell.method not in BASELINES]
+    return [cell for cell in evaluation.cells if is_policy(cell.method)]
 
 
 def _text(path: Path) -> str:

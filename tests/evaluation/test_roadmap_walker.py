@@ -7,6 +7,7 @@ from jaxleas.evaluation.roadmap_walker import roadmap_walker, stack
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import rb_kino
+from jaxleas.guide.registry import KINO
 from jaxleas.types import GuidePath
 
 
@@ -42,7 +43,7 @@ def test_a_roadmap_leads_around_the_hole_where_the_straight_way_does_not(env):
     starts = draw_starts(env, grounds, cell, suite.stream())
     method = rb_kino(env.config.limits, env.config.desired_speed)
     alone = walker(env, method)(grounds, starts, suite.steps)
-    led = roadmap_walker(env, method, "kino")(grounds, starts, 3000)
+    led = roadmap_walker(env, method, KINO.edges)(grounds, starts, 3000)
     assert led.reached.sum() > alone.reached.sum()
     length, straight = path_lengths(led)
     around = led.reached & ~alone.reached
