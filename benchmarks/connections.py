@@ -22,10 +22,10 @@ from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide import rb_kino
 from jaxleas.guide.double_integrator import axis_times, connect
-from jaxleas.guide.navigation_command import make_navigator
 from jaxleas.guide.registry import KINO
 from jaxleas.guide.roadmaps import Places
 from jaxleas.guide.roadmaps.connections import BATCH, one
+from jaxleas.guide.roadmaps.tuning import make_navigator
 from jaxleas.terrain import rasterise, transition
 from jaxleas.types import RootMotion
 from tests.guide.integrator_twin import can_last, least_time_twin, random_connections

@@ -24,11 +24,12 @@ from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_ev
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.files import atomic_path
 from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.navigation_command import make_navigator, start_motion
 from jaxleas.guide.picture import PATH
 from jaxleas.guide.registry import KINO, LEAS, Edges, Method
 from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
 from jaxleas.guide.roadmaps.exact import scene_of
+from jaxleas.guide.roadmaps.tuning import make_navigator
+from jaxleas.guide.starts import start_motion
 from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.seeds import EVALUATION_SEED
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.refusal import Refusal, env_of
+from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
-from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
 from jaxleas.guide.loading import load_policy, policy_file
@@ -101,7 +101,7 @@ def evaluation_file(run: Path, suite: str) -> Path:
 def run_evaluations(
     candidate: Candidate,
     run: Path,
-    stage: Stage,
+    basis: ReportBasis,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Evaluation]:
     """Return a run's evaluations on all suites: those it holds, and the others, made and kept now.
@@ -111,7 +111,7 @@ def run_evaluations(
     Args:
         candidate: policy of the run.
         run: folder of the run.
-        stage: suites and terrain, shared with the report's pictures.
+        basis: suites and terrain, shared with the report's pictures.
         progress: called with the cell that is being walked.
     """
     evaluations = []
@@ -119,8 +119,8 @@ def run_evaluations(
         path = evaluation_file(run, name)
         evaluation = kept_evaluation(path, candidate)
         if evaluation is None:
-            suite = stage.suites.get(name)
-            grounds = None if suite is None else stage.grounds
+            suite = basis.suites.get(name)
+            grounds = None if suite is None else basis.grounds
             evaluation = examine(
                 candidate, suite or make_suite(name), progress=progress, grounds=grounds
             )

@@ -9,10 +9,10 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Walker
 from jaxleas.evaluation.judge import Walk
 from jaxleas.evaluation.starts import Grounds, Starts
-from jaxleas.guide.navigation_command import make_navigator
 from jaxleas.guide.registry import Edges
 from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
 from jaxleas.guide.roadmaps.navigation import motion_at
+from jaxleas.guide.roadmaps.tuning import make_navigator
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.types import GuidePath, RootMotion
 

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.guide.registry import Edges, Method, SteeringName, find_method
+from jaxleas.guide.registry import Method, SteeringName, find_method
 from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types import InputError, RootMotion
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
-    from jaxleas.guide.roadmaps import Navigation, Navigator, Places
+    from jaxleas.guide.roadmaps import Navigation
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.terrain.scene import Scene
 
 FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
@@ -61,6 +60,8 @@ def navigate(
     from jaxleas.guide.roadmaps import Budget, Places
     from jaxleas.guide.roadmaps.exact import judge_exactly, require_exact_start, scene_of
     from jaxleas.guide.roadmaps.search import import_ompl
+    from jaxleas.guide.roadmaps.tuning import make_navigator
+    from jaxleas.guide.starts import start_motion
     from jaxleas.terrain.importers import import_terrain
     from jaxleas.xla.compilation import keep_compiled_programs
 
@@ -93,59 +94,6 @@ def navigate(
         draw_navigation(picture, ground, found.path, found.waypoints, goal)
     exactly = "" if verdict is None else f"; {verdict}"
     print(_sentence(out, found, goal, exactly, searched=planner != "none"))
-
-
-def make_navigator(
-    places: "Places",
-    method: "SteeringMethod",
-    edges: Edges,
-    planner: str,
-    scene: "Scene | None" = None,
-) -> "Navigator":
-    """Return a navigator tuned for a steering method.
-
-    Args:
-        places: places of the terrain where the robot can stand.
-        method: steering method.
-        edges: edges that suit the method.
-        planner: rrt, prm or none.
-        scene: polygons of the terrain; the exact conditions on them judge every whole path.
-    """
-    from jaxleas.guide.roadmaps.connections import Connector
-    from jaxleas.guide.roadmaps.exact import refusals
-    from jaxleas.guide.roadmaps.navigation import Navigator
-
-    config, robot = places.env.config, places.env.robot
-    radius = config.goal_radius if edges.radius is None else edges.radius
-    # A quarter more than the time of the straight way, and time to turn around.
-    straight = edges.reach / (config.desired_speed * config.limits.time_step)
-    turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
-    steps = math.ceil(1.25 * straight + turn)
-    connector = Connector(places, method, radius, steps)
-    refused = None if scene is None else lambda path: np.logical_or(*refusals(robot, scene, path))
-    return Navigator(connector, planner, edges.reach, refused)  # type: ignore[arg-type]
-
-
-def start_motion(
-    places: "Places", start: tuple[float, float], goal: tuple[float, float], yaw: float | None
-) -> RootMotion:
-    """Return the root motion of a robot at rest at the start.
-
-    Without a yaw it takes the valid heading nearest to the direction of the goal.
-
-    Raises:
-        InputError: the robot cannot stand there.
-    """
-    from jaxleas.guide.places import HEADINGS
-
-    if yaw is None:
-        facing = math.atan2(goal[1] - start[1], goal[0] - start[0])
-        headings = facing + np.array(sorted(HEADINGS, key=abs))
-        valid = places.valid(np.tile(start, (len(headings), 1)), headings)
-        yaw = float(headings[np.argmax(valid)]) if valid.any() else None
-    pose = places.require_valid("--from", start, yaw)
-    motion = places.standing(np.array([start]), np.array([pose.yaw]))
-    return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])
 
 
 def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float], float | None]:

@@ -17,8 +17,8 @@ from jaxleas.evaluation.examination import (
 )
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.refusal import load_refusal
+from jaxleas.evaluation.report_basis import make_report_basis
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide.registry import ResultName
 from jaxleas.labels import PlannerSettings
@@ -191,8 +191,8 @@ def report(run: Path, out: Path | None = None) -> Path:
         raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
-        stage = make_stage()
-        evaluations = run_evaluations(candidate, run, stage, reporter.say)
-        path = write_report(run, candidate, evaluations, stage, out, reporter.say)
+        basis = make_report_basis()
+        evaluations = run_evaluations(candidate, run, basis, reporter.say)
+        path = write_report(run, candidate, evaluations, basis, out, reporter.say)
     print(f"written: {path}")
     return path

@@ -9,7 +9,7 @@ import numpy as np
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.judge import Walk, walk
-from jaxleas.evaluation.stage import Stage
+from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.starts import Grounds, draw_starts
 from jaxleas.evaluation.suites import Cell
 from jaxleas.evaluation.titles import cell_title, method_title
@@ -60,23 +60,23 @@ class _Shown:
 
 
 def draw_gallery(
-    env: SteeringEnv, methods: Mapping[str, SteeringMethod], stage: Stage
+    env: SteeringEnv, methods: Mapping[str, SteeringMethod], basis: ReportBasis
 ) -> list[Picture]:
     """Walk one scene of every kind and draw it.
 
     Args:
         env: steering task.
         methods: steering methods; the first is the report's, and a second is drawn next to it.
-        stage: stage with the cells to be drawn.
+        basis: basis with the cells to be drawn.
     """
-    grounds = stage.grounds
+    grounds = basis.grounds
     first = next(iter(methods))
 
     def show(suite: str, name: str, yaw: float, beside: bool = True) -> _Shown:
-        cell = stage.shown[suite, name, yaw]
+        cell = basis.shown[suite, name, yaw]
         starts = draw_starts(env, grounds, cell, seed=0)
         walks = {
-            title: walk(env, grounds, method, starts, stage.steps[suite])
+            title: walk(env, grounds, method, starts, basis.steps[suite])
             for title, method in methods.items()
             if beside or title == first
         }

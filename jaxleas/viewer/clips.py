@@ -10,7 +10,7 @@ from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.guide.files import read_guide_paths
-from jaxleas.guide.standing import Pose
+from jaxleas.guide.starts import Pose
 from jaxleas.robots.effector import LIMB_OF_FOOT
 from jaxleas.types import GuidePath, InputError
 

@@ -176,7 +176,7 @@ def _drive(
 ) -> "Drive":
     from jaxleas.envs.steering.env import SteeringEnv
     from jaxleas.guide.loading import load_policy
-    from jaxleas.guide.standing import choose_start, require_start
+    from jaxleas.guide.starts import choose_start, require_start
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.ground import look_near

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jaxleas.guide.standing import Pose
+from jaxleas.guide.starts import Pose
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.viewer.figure import ROBOTS, Figure, draw_goal
 from jaxleas.viewer.terrain_mesh import meet

@@ -16,7 +16,7 @@ from jaxleas.viewer.terrain_mesh import Mesh
 if TYPE_CHECKING:
     from viser import GlbHandle, PointCloudHandle, ViserServer
 
-    from jaxleas.guide.standing import Pose
+    from jaxleas.guide.starts import Pose
 
 ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (150, 84, 170))
 """Colours of the robots, in order."""

@@ -12,7 +12,7 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.guide.leas import leas
 from jaxleas.guide.onnx_policy import OnnxPolicy
-from jaxleas.guide.standing import Pose
+from jaxleas.guide.starts import Pose
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.training.policy import Policy
 from jaxleas.types import RootMotion

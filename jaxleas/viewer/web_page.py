@@ -12,7 +12,8 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.layout import layout_named
 from jaxleas.files import write_bytes, write_json
 from jaxleas.guide.onnx_policy import read_onnx_policy
-from jaxleas.guide.standing import Pose, choose_start, require_start
+from jaxleas.guide.places import Pose
+from jaxleas.guide.starts import choose_start, require_start
 from jaxleas.robots import Robot
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError

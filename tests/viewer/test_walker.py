@@ -8,7 +8,7 @@ from jaxleas.export.write import described
 from jaxleas.guide import leas
 from jaxleas.guide.commands import walk_queries
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.guide.standing import Pose
+from jaxleas.guide.starts import Pose
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import Query
 from jaxleas.viewer.walker import Walker

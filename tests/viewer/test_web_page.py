@@ -18,7 +18,7 @@ from jaxleas.export.commands import export
 from jaxleas.export.write import described
 from jaxleas.guide.commands import walk_queries
 from jaxleas.guide.leas import leas
-from jaxleas.guide.standing import Pose
+from jaxleas.guide.starts import Pose
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.types import InputError, Query, RootMotion
