@@ -9,7 +9,7 @@ import numpy as np
 
 from jaxleas.guide.registry import SteeringName, find_method
 from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types import InputError, is_ground
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from jaxleas.envs.steering.env import SteeringEnv
@@ -91,6 +91,7 @@ def walk_queries(
     import jax.numpy as jnp
 
     from jaxleas.geometry.rotations import wrap_angle_on_host
+    from jaxleas.guide.places import walking_heights
     from jaxleas.guide.rollout import Trips, roll_out
     from jaxleas.terrain.atlas import make_atlas
     from jaxleas.types import RootMotion
@@ -103,8 +104,8 @@ def walk_queries(
     )
     # The height wanted at the goal: walking height; over the void, that of the start.
     goals = np.array([query.goal for query in queries])
-    height = terrain.height_at(goals) + env.robot.walking_height
-    height = np.where(is_ground(height), height, [query.position[2] for query in queries])
+    start_heights = np.array([query.position[2] for query in queries])
+    height = walking_heights(env.robot, terrain.height_at(goals), start_heights)
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
     trips = Trips(
         make_atlas([terrain]),

@@ -7,16 +7,16 @@ from jaxtyping import Float
 from scipy.ndimage import minimum_filter
 
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.guide.places import HEADINGS, Places, Pose
+from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion
+from jaxleas.types import InputError, RootMotion, RootPose
 
 MOST_PLACES = 5_000
 SPACING = 0.25  # distance between places that are tried [m]; wider on larger maps
 ROOM = 5  # places along each side of a square of valid places; the robot begins in its middle
 
 
-def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
+def choose_start(env: SteeringEnv, terrain: HeightMap) -> RootPose:
     """Return the valid standing pose with room around it that is farthest back (least x).
 
     The robot faces along x; among equals the pose nearest to the middle of the map's width is
@@ -45,7 +45,9 @@ def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
     return places.pose(chosen[np.argmin(rank)], 0.0)
 
 
-def require_start(env: SteeringEnv, terrain: HeightMap, start: tuple[float, float, float]) -> Pose:
+def require_start(
+    env: SteeringEnv, terrain: HeightMap, start: tuple[float, float, float]
+) -> RootPose:
     """Return the standing pose at a place, if it is valid.
 
     Args:
@@ -95,7 +97,8 @@ def start_motion(
         valid = places.valid(np.tile(start, (len(headings), 1)), headings)
         yaw = float(headings[np.argmax(valid)]) if valid.any() else None
     pose = places.require_valid("--from", start, yaw)
-    motion = places.standing(np.array([start]), np.array([pose.yaw]))
+    heading = float(pose.yaw) if yaw is None else yaw
+    motion = places.standing(np.array([start]), np.array([heading]))
     return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])
 
 

@@ -10,9 +10,8 @@ from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.guide.files import read_guide_paths
-from jaxleas.guide.starts import Pose
 from jaxleas.robots.effector import LIMB_OF_FOOT
-from jaxleas.types import GuidePath, InputError
+from jaxleas.types import GuidePath, InputError, RootPose
 
 SECONDS_A_PHASE = 1.0  # duration of a phase: a contact plan has no times
 
@@ -65,13 +64,14 @@ class Clip:
         """Time of the last configuration [s]."""
         return float(self.time[-1])
 
-    def at(self, time: float) -> tuple[Pose, bool] | None:
+    def at(self, time: float) -> tuple[RootPose, bool] | None:
         """Return the root's pose at a time [s] and whether it is valid; None if it is not known."""
         if not len(self.position):
             return None
         position = np.array([np.interp(time, self.time, each) for each in self.position.T])
         index = int(np.searchsorted(self.time, time + 1e-9, side="right")) - 1
-        return Pose(position, float(np.interp(time, self.time, self.yaw))), bool(self.valid[index])
+        yaw = float(np.interp(time, self.time, self.yaw))
+        return RootPose.from_yaw(position, yaw), bool(self.valid[index])
 
 
 def read_guide_clips(path: Path) -> list[Clip]:

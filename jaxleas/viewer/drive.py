@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jaxleas.guide.starts import Pose
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.types import RootPose
 from jaxleas.viewer.figure import ROBOTS, Figure, draw_goal
 from jaxleas.viewer.terrain_mesh import meet
 from jaxleas.viewer.walker import Walker
@@ -37,7 +37,7 @@ WORDS = {
 class Rider:
     """A walker and its figure on the page."""
 
-    def __init__(self, walker: Walker, figure: Figure, start: Pose) -> None:
+    def __init__(self, walker: Walker, figure: Figure, start: RootPose) -> None:
         self.walker, self.figure, self._start = walker, figure, start
         self.time_step = walker.env.config.limits.time_step
         self.reset()
@@ -95,7 +95,7 @@ class Drive:
     """
 
     def __init__(
-        self, server: "ViserServer", terrain: HeightMap, walkers: Sequence[Walker], start: Pose
+        self, server: "ViserServer", terrain: HeightMap, walkers: Sequence[Walker], start: RootPose
     ) -> None:
         """Draw robots and panel.
 
@@ -163,7 +163,7 @@ class Drive:
     def turn(self, angle: float) -> None:
         """Walk on a course turned by an angle [rad]; the first course is the heading."""
         if self._course is None:
-            self._course = self._riders[0].walker.pose.yaw
+            self._course = float(self._riders[0].walker.pose.yaw)
             self._goal.visible = False
         self._course += angle
         for rider in self._riders:

@@ -16,7 +16,7 @@ from jaxleas.viewer.terrain_mesh import Mesh
 if TYPE_CHECKING:
     from viser import GlbHandle, PointCloudHandle, ViserServer
 
-    from jaxleas.guide.starts import Pose
+    from jaxleas.types import RootPose
 
 ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (150, 84, 170))
 """Colours of the robots, in order."""
@@ -65,11 +65,9 @@ class Figure:
         self.trail = Trail(server, f"/trail{name}", colour)
         self._valid = True
 
-    def place(self, pose: "Pose") -> None:
+    def place(self, pose: "RootPose") -> None:
         """Put the robot at a pose."""
-        half = 0.5 * pose.yaw
-        self._root.position = pose.position
-        self._root.wxyz = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
+        self._root.position, self._root.wxyz = pose.position, pose.quaternion
 
     def mark(self, valid: bool) -> None:
         """Colour the body by whether the configuration is valid."""
