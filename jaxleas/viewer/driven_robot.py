@@ -33,7 +33,7 @@ class Sight:
     margin: float
 
 
-class Walker:
+class DrivenRobot:
     """A robot, its policy and its goal.
 
     The first step, made on construction, compiles everything: a step afterwards takes a fraction
@@ -97,10 +97,11 @@ class Walker:
         goal = self._goal or (0.0, 0.0)
         target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS only uses x and y
         self._motion = self._move(self._heights, self._motion, target)
-        self.before, self.pose = self.pose, _pose(self._motion) or self.pose
+        moved = _pose(self._motion)
+        self.before, self.pose = self.pose, moved or self.pose
         self.steps += 1
         self._perceive()
-        if not self.sight.margin >= 0.0:  # a NaN margin is not valid, either
+        if moved is None or not self.sight.margin >= 0.0:  # nor is a NaN margin valid
             self._halt("invalid")
         elif np.hypot(*(self.pose.position[:2] - goal)) <= self.env.config.goal_radius:
             self._halt("arrived")
