@@ -7,7 +7,7 @@ from jaxtyping import Bool
 
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Walker
-from jaxleas.evaluation.judge import Walk
+from jaxleas.evaluation.judge import CellRollOut
 from jaxleas.evaluation.starts import Grounds, Starts
 from jaxleas.guide.registry import Edges
 from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
@@ -30,7 +30,7 @@ def roadmap_walker(env: SteeringEnv, method: SteeringMethod, edges: Edges) -> Wa
         edges: edges of a roadmap that suit the method.
     """
 
-    def walks(grounds: Grounds, starts: Starts, steps: int) -> Walk:
+    def walks(grounds: Grounds, starts: Starts, steps: int) -> CellRollOut:
         navigators: dict[int, Navigator] = {}
         found = []
         for number, index in enumerate(np.asarray(starts.map_index).tolist()):
@@ -65,8 +65,10 @@ def _navigate(
     return path, len(path) - 1 <= steps
 
 
-def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts) -> Walk:
-    """Return guide paths as the walks of a cell; the last configuration of each is repeated.
+def stack(
+    paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts
+) -> CellRollOut:
+    """Return guide paths as the roll-outs of a cell; the last configuration of each is repeated.
 
     A path that ends before its goal is valid as far as it goes: it counts as stopped.
     """
@@ -78,7 +80,7 @@ def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: S
 
     valid = padded("valid").astype(bool)
     invalid = np.any(~valid, axis=1)
-    return Walk(
+    return CellRollOut(
         starts=starts,
         position=padded("position"),
         yaw=padded("yaw"),

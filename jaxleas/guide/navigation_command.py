@@ -58,7 +58,7 @@ def navigate(
     """
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.roadmaps import Budget, Places
-    from jaxleas.guide.roadmaps.exact import judge_exactly, require_exact_start, scene_of
+    from jaxleas.guide.roadmaps.exact import check_exactly, require_exact_start, scene_of
     from jaxleas.guide.roadmaps.search import import_ompl
     from jaxleas.guide.roadmaps.tuning import make_navigator
     from jaxleas.guide.starts import start_motion
@@ -88,11 +88,11 @@ def navigate(
         require_exact_start(places, scene, motion)
     navigator = make_navigator(places, method, named.edges, planner, scene)
     found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
-    verdict = None if scene is None else judge_exactly(env.robot, scene, found.path)
+    check = None if scene is None else check_exactly(env.robot, scene, found.path)
     _write(out, found)
     if picture is not None:
         draw_navigation(picture, ground, found.path, found.waypoints, goal)
-    exactly = "" if verdict is None else f"; {verdict}"
+    exactly = "" if check is None else f"; {check}"
     print(_sentence(out, found, goal, exactly, searched=planner != "none"))
 
 
@@ -137,7 +137,7 @@ def _write(out: Path, found: "Navigation") -> None:
 
 
 def _sentence(
-    out: Path, found: "Navigation", goal: tuple[float, float], verdict: str, searched: bool
+    out: Path, found: "Navigation", goal: tuple[float, float], exactly: str, searched: bool
 ) -> str:
     count = len(found.waypoints) - 1
     between = f"{count} waypoint{'' if count == 1 else 's'} on the way" if count else "no waypoints"
@@ -145,11 +145,11 @@ def _sentence(
     if found.reached:
         return (
             f"{out}: reached, {found.path.length:.2f} m in {found.path.time[-1]:.0f} s of walking,"
-            f" {between} ({effort}){verdict}"
+            f" {between} ({effort}){exactly}"
         )
     left = math.dist(found.path.position[-1, :2], goal)
     what = "was not reached within the limit" if searched else "was not reached by walking to it"
     return (
         f"{out}: the goal {what} ({effort}); the best partial path ends"
-        f" {left:.2f} m before it{verdict}"
+        f" {left:.2f} m before it{exactly}"
     )

@@ -19,7 +19,7 @@ HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
 """A robot can stand at a place if any of these headings is valid there [rad]."""
 NEARBY = 0.1
 """Spacing of the grid on which the nearest valid pose is sought [m]."""
-_AT_ONCE, _FEW = 4096, 16  # poses judged in one compiled call
+_AT_ONCE, _FEW = 4096, 16  # poses tried in one compiled call
 
 
 MOST_TRIED = 1_000_000
@@ -38,17 +38,17 @@ class Places:
         """
         self.env, self.terrain = env, terrain
         self.atlas = make_atlas([terrain])
-        judges = {
+        conditions = {
             "strict reachability R*": strict_reachability(env.robot, env.points_in_root),
             "collision C": collision(env.robot, env.points_in_root),
             "the condition": env.condition,
         }
 
-        def judge(motion: RootMotion) -> dict[str, jax.Array]:
+        def margins(motion: RootMotion) -> dict[str, jax.Array]:
             heights = env.local_heights(self.atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
-            return {name: condition(heights, motion) for name, condition in judges.items()}
+            return {name: condition(heights, motion) for name, condition in conditions.items()}
 
-        self._judge = jax.jit(judge)
+        self._margins = jax.jit(margins)
 
     def root_height(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, " N"]:
         """Return the root's z at walking height [m]; NaN where there is no ground."""
@@ -80,7 +80,7 @@ class Places:
             count = len(some.yaw)
             size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes are enough
             padded = jax.tree.map(lambda leaf, n=count, to=size: _padded(leaf, to, n), some)
-            parts.append({k: np.asarray(v)[:count] for k, v in self._judge(padded).items()})
+            parts.append({k: np.asarray(v)[:count] for k, v in self._margins(padded).items()})
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def valid(

@@ -80,7 +80,7 @@ def evaluate(
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
     """
-    plan = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
+    chosen = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
     further = parse_policies(_words(policies) or ())
@@ -95,7 +95,7 @@ def evaluate(
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
-            evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
+            evaluation = examine(candidate, chosen, baseline=baseline, progress=reporter.say)
         print(plain_table(evaluation))
         if folder is not None:
             keep_evaluation(folder, candidate, evaluation)
@@ -111,12 +111,12 @@ def evaluate(
     contenders = make_contenders(candidate, further, _words(methods))
     file = json
     if file is None and folder is not None:
-        file = side_by_side_file(folder, plan)
+        file = side_by_side_file(folder, chosen)
     with Reporter() as reporter:
         evaluation = compare(
             candidate,
             contenders,
-            plan,
+            chosen,
             Planning(
                 names,
                 {name: _settings(name, given) for name in names},
@@ -131,7 +131,7 @@ def evaluate(
     if pictures is not None:
         with Reporter() as reporter:
             drawn = draw_side_by_side(
-                candidate.env, contenders.walkers, plan, names[:1], pictures, reporter.say
+                candidate.env, contenders.walkers, chosen, names[:1], pictures, reporter.say
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation

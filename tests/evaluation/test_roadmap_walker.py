@@ -26,12 +26,12 @@ def line(first: float, last: float, count: int) -> GuidePath:
 def test_paths_of_any_length_make_one_walk():
     short, long = line(0.0, 1.0, 3), line(0.0, 3.0, 5)
     long.valid[4] = False
-    walk = stack([short, long], np.array([True, True]), None)  # type: ignore[arg-type]
-    assert walk.end.tolist() == [2, 4]
-    assert walk.position[0, :, 0] == pytest.approx([0.0, 0.5, 1.0, 1.0, 1.0])
-    assert walk.reached.tolist() == [True, False]
-    assert walk.invalid.tolist() == [False, True]
-    assert len(walk.guide_path(0, 0.2)) == 3
+    roll_outs = stack([short, long], np.array([True, True]), None)  # type: ignore[arg-type]
+    assert roll_outs.end.tolist() == [2, 4]
+    assert roll_outs.position[0, :, 0] == pytest.approx([0.0, 0.5, 1.0, 1.0, 1.0])
+    assert roll_outs.reached.tolist() == [True, False]
+    assert roll_outs.invalid.tolist() == [False, True]
+    assert len(roll_outs.guide_path(0, 0.2)) == 3
 
 
 @pytest.mark.slow
