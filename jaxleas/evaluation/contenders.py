@@ -15,7 +15,7 @@ from jaxleas.evaluation.roadmap_walker import roadmap_walker
 from jaxleas.guide.leas import leas
 from jaxleas.guide.loading import load_policy, policy_file
 from jaxleas.guide.registry import METHODS, compared, find_method
-from jaxleas.guide.roadmaps.search import import_ompl
+from jaxleas.guide.roadmaps.ompl import import_ompl
 from jaxleas.types.errors import InputError
 
 

@@ -59,7 +59,7 @@ def navigate(
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.roadmaps import Budget, Places
     from jaxleas.guide.roadmaps.exact import check_exactly, require_exact_start, scene_of
-    from jaxleas.guide.roadmaps.search import import_ompl
+    from jaxleas.guide.roadmaps.ompl import import_ompl
     from jaxleas.guide.roadmaps.tuning import make_navigator
     from jaxleas.guide.starts import start_motion
     from jaxleas.terrain.importers import import_terrain
