@@ -162,3 +162,16 @@ def test_steering_imports_no_physics(module: str) -> None:
         pytest.skip(f"{module} does not exist yet")
     code = f"import sys, {module}; assert not {{'mujoco', 'brax.envs'}} & sys.modules.keys()"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_no_library_imports_a_command():
+    """Commands import libraries; the command line, in turn, names commands as text."""
+    found = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in FILES
+        if path.stem.rpartition("_")[2] not in COMMAND_FILES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and (module := node.module or "")
+        if module.rpartition(".")[2].rpartition("_")[2] in COMMAND_FILES
+    ]
+    assert found == []

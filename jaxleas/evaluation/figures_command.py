@@ -14,11 +14,12 @@ from jaxleas.evaluation.figures import KEEP_EVERY, Questions, figure_cells, meas
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
+from jaxleas.guide.registry import KINO, ResultName
 from jaxleas.labels.judging import planner_workers
 from jaxleas.labels.settings import settings_of
 from jaxleas.types.errors import InputError
 
-METHODS = ("rb_kino", POLICY)
+METHODS = (KINO.key, POLICY)
 
 
 def figures(
@@ -26,7 +27,7 @@ def figures(
     *,
     out: Path,
     policies: Sequence[str] | None = None,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[ResultName] | None = None,
     planner: PlannerName = DEFAULT_PLANNER,
     parameters: Sequence[str] | None = None,
     keep_every: Sequence[int] = KEEP_EVERY,
@@ -45,8 +46,8 @@ def figures(
         run: a run folder, a policy.npz or an .onnx file: LEAS-P1.
         out: path of the figure file, .json.
         policies: further policies, each as name=path.
-        methods: methods from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further policies; by
-            default rb_kino, leas_p1 and the further ones.
+        methods: methods to measure, the further policies among them; by default rb_kino, leas_p1
+            and the further policies.
         planner: exact planner that judges.
         parameters: any settings of the planner but keep_every, such as model=feet.
         keep_every: values of N: one configuration in every N is planned for.

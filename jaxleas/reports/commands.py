@@ -17,9 +17,10 @@ from jaxleas.evaluation.examination import (
 )
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.refusal import load_refusal
+from jaxleas.evaluation.report_basis import make_report_basis
 from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.stage import make_stage
 from jaxleas.evaluation.suites import make_suite
+from jaxleas.guide.registry import ResultName
 from jaxleas.labels import PlannerSettings
 from jaxleas.labels.settings import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
@@ -37,7 +38,7 @@ def evaluate(
     seed: int = 0,
     held_out: bool = False,
     planners: Sequence[PlannerName] | None = None,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[ResultName] | None = None,
     policies: Sequence[str] | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
@@ -61,12 +62,11 @@ def evaluate(
         starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
         json: file to write the result to as well; a run folder keeps the result with the most
             starts in RUN/evaluation/.
-        baseline: judge RB-Lin and RB-Kino as well.
+        baseline: judge the baselines, RB-Lin and RB-Kino, as well.
         seed: seed of scenes and starts; training never sees any of them.
         held_out: judge on terrain for choosing and tuning, not on that of evaluation.
         planners: exact planners that judge, or none; for the suite thesis all built-in ones.
-        methods: methods that stand side by side, from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the
-            further policies; by default all.
+        methods: methods that stand side by side, the further policies among them; by default all.
         policies: further policies, each as name=path.
         time_limit: time limit for one guide path, of mip and sl1m [s]; a path not decided by then
             counts as not planned.
@@ -84,7 +84,7 @@ def evaluate(
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
     """
-    plan = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
+    chosen = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
     given = {
@@ -106,7 +106,7 @@ def evaluate(
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
-            evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
+            evaluation = examine(candidate, chosen, baseline=baseline, progress=reporter.say)
         print(plain_table(evaluation))
         if folder is not None:
             keep_evaluation(folder, candidate, evaluation)
@@ -120,12 +120,12 @@ def evaluate(
     contenders = make_contenders(candidate, further, _words(methods))
     file = json
     if file is None and folder is not None:
-        file = side_by_side_file(folder, plan)
+        file = side_by_side_file(folder, chosen)
     with Reporter() as reporter:
         evaluation = compare(
             candidate,
             contenders,
-            plan,
+            chosen,
             Planning(names, settings, processes or os.cpu_count() or 1),
             file=file,
             say=reporter.say,
@@ -136,7 +136,7 @@ def evaluate(
     if pictures is not None:
         with Reporter() as reporter:
             drawn = draw_side_by_side(
-                candidate.env, contenders.walkers, plan, names[:1], pictures, reporter.say
+                candidate.env, contenders.walkers, chosen, names[:1], pictures, reporter.say
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation
@@ -220,8 +220,8 @@ def report(run: Path, out: Path | None = None) -> Path:
         raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
-        stage = make_stage()
-        evaluations = run_evaluations(candidate, run, stage, reporter.say)
-        path = write_report(run, candidate, evaluations, stage, out, reporter.say)
+        basis = make_report_basis()
+        evaluations = run_evaluations(candidate, run, basis, reporter.say)
+        path = write_report(run, candidate, evaluations, basis, out, reporter.say)
     print(f"written: {path}")
     return path
