@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jaxleas.contacts.planner_settings import settings_from
+from jaxleas.contacts.planner_settings import stored_settings
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import ask, walker
 from jaxleas.evaluation.result_file import now
@@ -64,7 +64,7 @@ def main() -> None:
     require_fit(surrogate, policy.config, where=given.surrogate)
     env = SteeringEnv(policy.config)
     identity = surrogate.identity
-    settings = settings_from(identity.planner, **identity.parameters)
+    settings = stored_settings(identity.planner, identity.parameters)
     kino = rb_kino(env.config.limits, env.config.desired_speed)
     curves = {}
     walks = disturbed(env, Path(given.labels), surrogate)

@@ -23,9 +23,7 @@ ORDER = (
 """Of physics, controllers, multicontact and footsteps there is the place alone."""
 # What keeps the loop of data open: these may not, although the order would let them.
 FORBIDDEN = {"surrogates": {"labels"}}
-# Rooms whose functions take few parameters; a command has one for each of its options.
-SHORT_SIGNATURES = ("types", "guide", "surrogates", "evaluation", "distillation", "viewer")
-MOST_PARAMETERS = 6
+MOST_PARAMETERS = 6  # a command has one for each of its options
 COMMAND_FILES = ("commands", "command")
 # These serve every task.
 GENERAL = (
@@ -80,11 +78,8 @@ def long_signatures(path: Path) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("room", SHORT_SIGNATURES)
-def test_many_parameters_are_values_with_names(room: str) -> None:
-    files = [path for path in FILES if room_of(path) == room]
-    assert files
-    assert {str(path): long_signatures(path) for path in files if long_signatures(path)} == {}
+def test_many_parameters_are_values_with_names() -> None:
+    assert {str(path): long_signatures(path) for path in FILES if long_signatures(path)} == {}
 
 
 @pytest.mark.parametrize("room", GENERAL)
@@ -162,3 +157,16 @@ def test_steering_imports_no_physics(module: str) -> None:
         pytest.skip(f"{module} does not exist yet")
     code = f"import sys, {module}; assert not {{'mujoco', 'brax.envs'}} & sys.modules.keys()"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_no_library_imports_a_command():
+    """Commands import libraries; the command line, in turn, names commands as text."""
+    found = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in FILES
+        if path.stem.rpartition("_")[2] not in COMMAND_FILES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and (module := node.module or "")
+        if module.rpartition(".")[2].rpartition("_")[2] in COMMAND_FILES
+    ]
+    assert found == []

@@ -115,7 +115,7 @@ def _figures_5_10_to_13() -> "Figure":
 def _scenario(ax: "Axes", title: str, problem: ContactProblem, phase: int) -> None:
     found = attempt(problem, pruning=False)
     assert found.relaxed is not None
-    _cost(ax, problem, problem.phases[phase].candidates, (-0.35, 1.45, -0.6, 0.7))
+    _cost(ax, problem, problem.steps[phase].candidates, (-0.35, 1.45, -0.6, 0.7))
     placed = None if found.placement is None else found.placement.footholds
     for feet, filled in ((found.relaxed.footholds, False), (placed, True)):
         for index, point in enumerate(() if feet is None else feet):

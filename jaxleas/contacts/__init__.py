@@ -1,7 +1,7 @@
 """Contact problems, their exact planners (mixed-integer, SL1M, sampling) and certificates."""
 
 from jaxleas.contacts.certificate import Violation, certify
-from jaxleas.contacts.from_guide import problem_from_guide
+from jaxleas.contacts.from_guide import Stepping, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
 from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
 from jaxleas.contacts.plan_sampling import plan_sampling
@@ -9,7 +9,7 @@ from jaxleas.contacts.planner import PlannerError
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Phase, Step
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.programs.prefix import last_feasible_phase
@@ -29,7 +29,9 @@ __all__ = [
     "PlannerError",
     "Posture",
     "StanceCertificate",
+    "Step",
     "StepPolytopes",
+    "Stepping",
     "Violation",
     "certify",
     "certify_postures",

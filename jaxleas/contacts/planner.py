@@ -13,7 +13,6 @@ from jaxleas.types import GuidePath, Verdict
 from jaxleas.types.errors import InputError
 
 Measure = Literal["robustness", "undecided", "combinations"]
-DEFAULT_ROBOT = "talos"
 
 
 class PlannerError(RuntimeError):

@@ -17,11 +17,12 @@ from jaxleas.files import write_json
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.runs.folder import RunFolder
 from jaxleas.training.devices import Devices
-from jaxleas.training.loop import train
+from jaxleas.training.loop import train_with
 from jaxleas.training.networks import make_networks
 from jaxleas.training.normaliser import initial_normaliser
 from jaxleas.training.policy import policy_of, write_policy
 from jaxleas.training.train_state import Learned
+from jaxleas.training.trainer import Trainer
 
 _LOG = logging.getLogger("jaxleas")
 
@@ -80,7 +81,7 @@ def practise(
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
         task = Steering(config.env, config.terrain, foresight=foresight)
-        train(config, run, task=task, devices=devices, learned=learned)
+        train_with(Trainer(config, task, devices), run, learned)
     conclude(folder, config, time.perf_counter() - begun)
 
 

@@ -63,8 +63,8 @@ class Workplace:
         """
         self.config, self.folder, self._start = config, folder, start
         planner = find_planner(config.planner, allow)
-        self.settings: PlannerSettings = settings_from(planner, **config.parameters)
-        self.labelling: PlannerSettings = settings_from(planner, **config.labelling_parameters)
+        settings: PlannerSettings = settings_from(planner, **config.parameters)
+        labelling: PlannerSettings = settings_from(planner, **config.labelling_parameters)
         self.devices = devices or one_device()
         own, self.learned = widen(*read_run(start), config.practice.observation)
         terrain = config.practice.terrain or own.terrain
@@ -72,6 +72,7 @@ class Workplace:
         self.env = SteeringEnv(self.run_config.env)
         self.workers = ProcessWorkers(processes, PLANNER_MODULES)
         robot = self.run_config.env.robot
+        self.settings, self.labelling = settings.for_robot(robot), labelling.for_robot(robot)
         self.judge = Judge(config.planner, self.settings, workers=self.workers, robot=robot)
 
     @cached_property

@@ -8,6 +8,8 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
+from jaxleas.xla.gather import take_inside
+
 
 @dataclass(frozen=True)
 class Mirror:
@@ -57,4 +59,4 @@ class Mirror:
         if self.order == tuple(range(len(self.order))):
             return vector
         order = jnp.asarray(self.order, jnp.int32)
-        return vector.at[..., order].get(mode="promise_in_bounds")
+        return take_inside(vector, (..., order))

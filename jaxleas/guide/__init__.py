@@ -12,13 +12,16 @@ from jaxleas.guide.loading import load_policy
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
 from jaxleas.guide.rb_kino import RbKino, rb_kino
 from jaxleas.guide.rb_lin import RbLin, rb_lin
+from jaxleas.guide.registry import Edges, Method
 from jaxleas.guide.rollout import RollOut, Trips, paths, roll_out
 from jaxleas.guide.steering_method import HostSteeringMethod, SteeringMethod
 
 __all__ = [
+    "Edges",
     "GuidePathFile",
     "HostSteeringMethod",
     "Leas",
+    "Method",
     "OnnxPolicy",
     "RbKino",
     "RbLin",

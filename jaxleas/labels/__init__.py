@@ -1,6 +1,6 @@
 """Ask an exact planner many times, in parallel; verdict files with provenance."""
 
-from jaxleas.contacts.own_planner import Outcome, OwnPlanner
+from jaxleas.contacts.own_planner import Outcome, OwnPlanner, PlannerAnswer
 from jaxleas.contacts.planner import AskedGuides
 from jaxleas.contacts.programs.settings import MipSettings, Sl1mSettings
 from jaxleas.contacts.settings import PlannerSettings
@@ -20,6 +20,7 @@ __all__ = [
     "Oracle",
     "Outcome",
     "OwnPlanner",
+    "PlannerAnswer",
     "PlannerSettings",
     "ProcessWorkers",
     "Shard",

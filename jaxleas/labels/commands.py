@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT
 from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.contacts.registry import DEFAULT_JUDGE, PlannerName, find_planner
+from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.types.errors import InputError
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ def label(
         samples: sampling: number of leg configurations in the data base, 25000 by default.
         heuristic: sampling: score that orders the candidates, fixed_step by default.
         seed: sampling: seed of the data base, 0 by default.
-        model: mip, sl1m: two_com (with the centre of mass, the default) or feet.
+        model: mip, sl1m: two_com (with the centre of mass) or feet; by default two_com where the
+            robot has two feet and step polytopes of its centre of mass.
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
         time_limit: mip, sl1m: time limit per guide path, 60 by default; then it stays
@@ -67,7 +68,7 @@ def label(
 
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.oracle import Oracle
-    from jaxleas.labels.settings import settings_of
+    from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.workers.processes import require_count
 
@@ -83,13 +84,12 @@ def label(
         "max_combinations": max_combinations,
         "weights": weights,
     }
-    further = settings_of(parameters or ())
-    if twice := next((name for name in further if given.get(name) is not None), None):
-        option = twice.replace("_", "-")
-        raise InputError(f"--{option} and --parameters {twice} say the same: give one of them")
-    settings = settings_from(find_planner(planner, [planner]), **(given | further))
+    given = with_parameters(given, settings_of(parameters or ()))
+    settings = settings_from(find_planner(planner, [planner]), **given)
     if processes is not None:
         require_count(processes)
+    if note := settings.note_for(robot):
+        print(note)
     begun = perf_counter()
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]

@@ -11,7 +11,7 @@ from jaxleas.configuration.yaml_text import read_mapping
 from jaxleas.envs.registry import DEFAULT_TASK, TASKS
 from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
 from jaxleas.files import is_held, read_json
-from jaxleas.guide.registry import BASELINES
+from jaxleas.guide.registry import is_policy
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.training.config import RunConfig
 from jaxleas.training.run_config import run_config_of
@@ -81,7 +81,7 @@ class RunRecord:
         """Return the cells of a suite in which the run's policy was judged by the conditions."""
         found = self.evaluations.get(suite)
         cells = () if found is None else found.cells
-        return [each for each in cells if each.method not in BASELINES and each.planner is None]
+        return [each for each in cells if is_policy(each.method) and each.planner is None]
 
 
 def read_record(path: str | Path) -> RunRecord:

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.evaluation.examination import POLICY, Candidate
+from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.stage import Stage
 from jaxleas.files import read_json, write_bytes, write_text
-from jaxleas.guide.registry import BASELINES
+from jaxleas.guide.registry import BASELINES, is_policy
 from jaxleas.reports.gallery import Picture, draw_gallery
 from jaxleas.reports.learning_curves import draw_learning_curves
 from jaxleas.reports.page import page_template
@@ -47,7 +47,7 @@ def write_report(
     run: str | Path,
     candidate: Candidate,
     evaluations: Sequence[Evaluation],
-    stage: Stage,
+    basis: ReportBasis,
     out: str | Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Path:
@@ -59,7 +59,7 @@ def write_report(
         run: run folder with config.yaml, provenance.json and metrics.jsonl.
         candidate: policy of the run, which walks for the pictures.
         evaluations: evaluations of the policy, one per suite.
-        stage: stage with the scenes to be drawn.
+        basis: basis with the scenes to be drawn.
         out: file to write; by default RUN/report.html.
         progress: called with what is being made.
 
@@ -73,7 +73,7 @@ def write_report(
     out = run / "report.html" if out is None else Path(out)
     metrics = read_metrics(run / "metrics.jsonl") if (run / "metrics.jsonl").is_file() else []
     progress("report: walking for the pictures")
-    pictures = draw_gallery(candidate.env, candidate.methods, stage)
+    pictures = draw_gallery(candidate.env, candidate.methods, basis)
     for picture in pictures:
         write_bytes(run / "pictures" / f"{picture.name}.png", picture.png)
     progress("report: writing")
@@ -181,7 +181,7 @@ def _value(cell: CellResult | None) -> tuple[str, str]:
 
 def _ours(evaluation: Evaluation) -> list[CellResult]:
     """Return the cells of the policy itself."""
-    return [cell for cell in evaluation.cells if cell.method not in BASELINES]
+    return [cell for cell in evaluation.cells if is_policy(cell.method)]
 
 
 def _text(path: Path) -> str:

@@ -197,7 +197,7 @@ def _read(path: Path, manifest_only: bool = False) -> tuple[Any, dict[str, np.nd
 
 
 def _is_manifest(manifest: dict[str, Any]) -> bool:
-    leaves, score = manifest.get("leaves"), manifest.get("score")
+    leaves, score = manifest.get("leaves"), manifest.get("score", "missing")
     return (
         isinstance(leaves, list)
         and all(

@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field
 
 from jaxleas.files import is_file, read_json, require_version, typed
 from jaxleas.guide.files import read_guide_paths
+from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain.atlas import Atlas, make_atlas
 from jaxleas.terrain.mesh_scene import load_scene
@@ -20,7 +21,6 @@ from jaxleas.terrain.rasterise import rasterise
 from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64
-DEFAULT_ROBOT = "talos"
 VERSION = 2  # of verdict files
 
 

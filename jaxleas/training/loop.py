@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import jax
 import numpy as np
 
-from jaxleas.envs.environment import Task
 from jaxleas.runs.background import Background
 from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
 from jaxleas.runs.folder import RunFolder
@@ -42,7 +41,6 @@ def train(
     config: RunConfig,
     run: RunFolder,
     *,
-    task: Task | None = None,
     devices: Devices | None = None,
     learned: Learned | None = None,
     on_examined: Callable[[], None] = lambda: None,
@@ -56,7 +54,6 @@ def train(
     Args:
         config: configuration of the run.
         run: folder held for writing.
-        task: task that is learned, in place of the one that the configuration names.
         devices: devices that share the training; by default the first.
         learned: networks to begin with, in place of fresh ones; a resumed run continues its own.
         on_examined: function that is called when an examination's rows are in the run folder and
@@ -73,7 +70,26 @@ def train(
         InputError: a watcher is not installed or not set up.
     """
     require_watchers(config.watch)  # before minutes go into compiling
-    trainer = Trainer(config, task or make_task(config, allow), devices or one_device())
+    trainer = Trainer(config, make_task(config, allow), devices or one_device())
+    return train_with(trainer, run, learned, on_examined)
+
+
+def train_with(
+    trainer: Trainer,
+    run: RunFolder,
+    learned: Learned | None = None,
+    on_examined: Callable[[], None] = lambda: None,
+) -> Policy:
+    """Train to the end, or until interrupted, as `train` does, with a trainer made before.
+
+    Args:
+        trainer: task, worlds and compiled functions of the training.
+        run: folder held for writing.
+        learned: networks to begin with, as for `train`.
+        on_examined: function that is called after each examination, as for `train`.
+    """
+    config = trainer.config
+    require_watchers(config.watch)
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
@@ -134,7 +150,7 @@ def _first_state(
 
     if from_first(look) == "resumed":
         step, state, note = found or (0, like, {"best": -1.0})
-        return step, trainer.place(state), note["best"]
+        return step, trainer.place(state), _best_score(note, step)
     state = trainer.fresh_state()
     if learned is not None:
         state = trainer.place(learned.into(state))
@@ -142,6 +158,16 @@ def _first_state(
     if checkpoints is not None:
         checkpoints.save(0, kept, {"best": -1.0})
     return 0, state, -1.0
+
+
+def _best_score(note: dict, step: int) -> float:
+    """Return the best score so far, as the note of a checkpoint states it."""
+    best = note.get("best")
+    if isinstance(best, bool) or not isinstance(best, int | float):
+        raise InputError(
+            f"the checkpoint of step {step} is not a training's: its note states no number 'best'"
+        )
+    return float(best)
 
 
 def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:

@@ -12,17 +12,21 @@ from jaxleas.types.paths import GuidePath, cut_walks
 from jaxleas.types.poses import Pose, RootPose
 from jaxleas.types.queries import Query
 from jaxleas.types.stances import Contact, Stance, SupportPhase
-from jaxleas.types.verdict import Verdict
+from jaxleas.types.verdict import CAUSES, Cause, PathProgress, PlannerMeasures, Verdict
 
 if TYPE_CHECKING:
     from jaxleas.types.root import RootMotion
 
 __all__ = [
+    "CAUSES",
     "NO_GROUND",
+    "Cause",
     "Contact",
     "GuidePath",
     "InputError",
     "JaxleasError",
+    "PathProgress",
+    "PlannerMeasures",
     "Pose",
     "Query",
     "RootMotion",

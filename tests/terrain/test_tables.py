@@ -76,7 +76,8 @@ def test_points_on_a_grid_are_a_map(tmp_path, mark):
         ("1,2\n3,inf\n", "infinity"), ("1,2,3\n" * 30, "if they are points, put the line x,y,z"),
         ("x,z\n1,2\n", "points need x, y and z"),
         ("x,y,z\n0,0,0\n0.1,0.033,0\n0.25,0.1,0\n", "no grid"),
-        ("x,y,z\n1,2\n", "rows of 2 to 3 columns"), ("x,y,z\n", "header and no rows"), ("nan,nan\nnan,nan\n", "no ground"),
+        ("x,y,z\n1,2\n", "rows of 2 to 3 columns"), ("x,y,z\n", "header and no rows"),
+        ("nan,nan\nnan,nan\n", "no ground"),
         ("1\n2\n", "at least 2 x 2"),
     ],
 )  # fmt: skip

@@ -20,7 +20,7 @@ NEAR = 0.1 * np.arange(1, 11)
 
 
 @dataclass(frozen=True)
-class ExactVerdict:
+class ExactCheck:
     """The answer of the exact conditions for a path.
 
     Attributes:
@@ -35,7 +35,7 @@ class ExactVerdict:
     colliding: int
 
     def __str__(self) -> str:
-        """Return the verdict as part of a sentence."""
+        """Return the answer as part of a sentence."""
         if not (self.unreachable or self.colliding):
             return f"the exact conditions hold at all {self.configurations} configurations"
         refused = [
@@ -69,7 +69,7 @@ def refusals(
     return ~reached, ~free
 
 
-def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
+def check_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactCheck:
     """Count the configurations of a path that the exact twins of R* and C refuse.
 
     Args:
@@ -78,7 +78,7 @@ def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
         path: guide path of the root.
     """
     unreachable, colliding = refusals(robot, scene, path)
-    return ExactVerdict(len(path), int(unreachable.sum()), int(colliding.sum()))
+    return ExactCheck(len(path), int(unreachable.sum()), int(colliding.sum()))
 
 
 def require_exact_start(places: Places, scene: Scene, start: RootMotion) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from jaxtyping import Float
@@ -10,7 +10,7 @@ from jaxtyping import Float
 from jaxleas.contacts.problem import ContactProblem
 
 INITIAL = -1
-"""Index that means "where the foot stood before the first phase" among indices of phases."""
+"""Index that means "where the foot stood before the first step" among indices of steps."""
 
 Family = Literal["step", "com_reach", "com_over"]
 """Families of constraints on a step: relative reach of the feet (T eq. B.3), reach of the centre of
@@ -31,7 +31,7 @@ class Link:
 
     Attributes:
         effector: name of the effector that stands.
-        standing: index of the phase in which it landed, or INITIAL.
+        standing: index of the step in which it landed, or INITIAL.
         yaw: heading with which it stands [rad].
         A: unit rows, in world axes.
         b: bounds of the rows [m].
@@ -45,7 +45,7 @@ class Link:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class StepConstraints:
     """The constraints on a landing foot m from all standing feet.
 
     With two feet there must also be a centre of mass c with c - p_o in `com[i][0]` and c - p_m
@@ -72,17 +72,17 @@ class Step:
         """Number of rows of all links."""
         return sum(len(link.b) for link in self.links)
 
-    def with_cuts(self, A: Float[np.ndarray, "c 3"], b: Float[np.ndarray, " c"]) -> "Step":
-        """Return the step of two feet with further rows on the displacement."""
+    def with_cuts(self, A: Float[np.ndarray, "c 3"], b: Float[np.ndarray, " c"]) -> Self:
+        """Return the constraints, of two feet, with further rows on the displacement."""
         link = self.link
         rows, bounds = np.concatenate([link.A, A]), np.concatenate([link.b, b])
         return replace(self, links=(replace(link, A=rows, b=bounds),))
 
 
-def make_steps(
+def make_constraints(
     problem: ContactProblem, relaxed: Mapping[Family, float] | None = None
-) -> list[Step]:
-    """Return the step of each phase.
+) -> list[StepConstraints]:
+    """Return the constraints on each step.
 
     Model "feet" (published SL1M code): A_{o_in_m} R_k^T (p_o - p_m) <= b, for each foot o that
     stands; model "two_com" (T eq. B.3): A_{m_in_o} R_{k-1}^T (p_m - p_o) <= b, and two positions of
@@ -90,26 +90,26 @@ def make_steps(
 
     Args:
         problem: the contact problem.
-        relaxed: amount by which the *last* phase may violate each family of constraints [m].
+        relaxed: amount by which the *last* step may violate each family of constraints [m].
     """
     stances = {name: (INITIAL, pose.yaw) for name, pose in problem.initial.items()}
-    steps = []
-    for index, phase in enumerate(problem.phases):
+    constraints = []
+    for index, step in enumerate(problem.steps):
         more = (relaxed or {}) if index == len(problem) - 1 else {}
         links = []
         for name, (standing, yaw) in stances.items():
-            if name == phase.foot:
+            if name == step.foot:
                 continue
-            reach = _reach(problem, phase.foot, phase.yaw, name, yaw)
+            reach = _reach(problem, step.foot, step.yaw, name, yaw)
             links.append(Link(name, standing, yaw, reach.A, reach.b + more.get("step", 0.0)))
         com = ()
         if problem.model == "two_com":
             (other,) = links
-            feet = ((other.effector, rotation(other.yaw)), (phase.foot, rotation(phase.yaw)))
+            feet = ((other.effector, rotation(other.yaw)), (step.foot, rotation(step.yaw)))
             com = tuple(_com(problem, feet, over, more) for over in (0, 1))
-        steps.append(Step(phase.foot, tuple(links), com))
-        stances[phase.foot] = (index, phase.yaw)
-    return steps
+        constraints.append(StepConstraints(step.foot, tuple(links), com))
+        stances[step.foot] = (index, step.yaw)
+    return constraints
 
 
 def rotation(yaw: float) -> Float[np.ndarray, "3 3"]:
@@ -136,12 +136,12 @@ def _com(
 ) -> tuple[HalfSpaces, HalfSpaces]:
     """Return where c may be from each foot; it lies over foot number `over`."""
     sole = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
-    sides = np.repeat(problem.foot_half_size, 2) + more.get("com_over", 0.0)
     sets = []
     for number, (name, turn) in enumerate(feet):
         reach = problem.polytopes.com[name]
         A, b = reach.normals, reach.offsets + more.get("com_reach", 0.0)
         if number == over:
+            sides = np.repeat(problem.half_sizes[name], 2) + more.get("com_over", 0.0)
             A, b = np.concatenate([A, sole]), np.concatenate([b, sides])
         sets.append(HalfSpaces(A @ turn.T, b))
     return sets[0], sets[1]

@@ -12,10 +12,9 @@ from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.geometry.rotations import wrap_angle_on_host
 from jaxleas.guide.leas import leas
 from jaxleas.guide.onnx_policy import OnnxPolicy
-from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import Atlas
 from jaxleas.training.policy import Policy
-from jaxleas.types import RootMotion
+from jaxleas.types import RootMotion, RootPose
 
 State = Literal["waiting", "walking", "arrived", "invalid"]
 
@@ -34,7 +33,7 @@ class Sight:
     margin: float
 
 
-class Walker:
+class DrivenRobot:
     """A robot, its policy and its goal.
 
     The first step, made on construction, compiles everything: a step afterwards takes a fraction
@@ -65,18 +64,18 @@ class Walker:
         on_host = getattr(method, "runs_on_host", False)
         self._move = method if on_host else jax.jit(method.__call__)
         self._look = jax.jit(lambda motion: _look(env, atlas, motion))
-        self.reset(Pose(np.zeros(3), 0.0))
+        self.reset(RootPose.identity())
         self.step()
-        self.reset(Pose(np.zeros(3), 0.0))
+        self.reset(RootPose.identity())
 
-    def reset(self, start: Pose) -> None:
+    def reset(self, start: RootPose) -> None:
         """Stand still at a start, without a goal."""
         self._motion = RootMotion(
             position=jnp.asarray(start.position, jnp.float32)[None],
             velocity=jnp.zeros((1, 3), jnp.float32),
             yaw=jnp.asarray([start.yaw], jnp.float32),
         )
-        self.before = self.pose = _pose(self._motion)
+        self.before = self.pose = RootPose.from_yaw(start.position, start.yaw)
         self._goal: tuple[float, float] | None = None
         self.steps = 0
         self._perceive()
@@ -91,20 +90,21 @@ class Walker:
     def stop(self) -> None:
         """Stand where the robot is, as on arrival."""
         if self.state == "walking":
-            self._stand("waiting")
+            self._halt("waiting")
 
     def step(self) -> None:
         """Move for one time step (T eq. 3.3); arrive, or fail, as in a roll-out."""
         goal = self._goal or (0.0, 0.0)
         target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS only uses x and y
         self._motion = self._move(self._heights, self._motion, target)
-        self.before, self.pose = self.pose, _pose(self._motion)
+        moved = _pose(self._motion)
+        self.before, self.pose = self.pose, moved or self.pose
         self.steps += 1
         self._perceive()
-        if not self.sight.margin >= 0.0:  # a NaN margin is not valid, either
-            self._stand("invalid")
+        if moved is None or not self.sight.margin >= 0.0:  # nor is a NaN margin valid
+            self._halt("invalid")
         elif np.hypot(*(self.pose.position[:2] - goal)) <= self.env.config.goal_radius:
-            self._stand("arrived")
+            self._halt("arrived")
 
     @property
     def seconds(self) -> float:
@@ -116,17 +116,17 @@ class Walker:
         """The last goal of the robot (x, y) [m]."""
         return self._goal
 
-    def between(self, share: float) -> Pose:
+    def between(self, share: float) -> RootPose:
         """Return the pose at a share, 0 to 1, of the way between the last two configurations."""
         turn = float(wrap_angle_on_host(self.pose.yaw - self.before.yaw))
         way = self.pose.position - self.before.position
-        return Pose(self.before.position + share * way, self.before.yaw + share * turn)
+        return RootPose.from_yaw(self.before.position + share * way, self.before.yaw + share * turn)
 
     def points_seen(self) -> Float[np.ndarray, "points 3"]:
         """Return the observation's grid in the root frame, at the observed heights [m]."""
         return np.column_stack([self.env.layout.points_in_root, self.sight.heights])
 
-    def _stand(self, state: State) -> None:
+    def _halt(self, state: State) -> None:
         self.state = state
         self._motion = RootMotion(
             position=self._motion.position,
@@ -148,5 +148,8 @@ def _look(
     return heights, seen, env.condition(heights, motion)
 
 
-def _pose(motion: RootMotion) -> Pose:
-    return Pose(np.asarray(motion.position[0], np.float64), float(motion.yaw[0]))
+def _pose(motion: RootMotion) -> RootPose | None:
+    """Return where a robot is; None where its policy answered with what is no number."""
+    position, yaw = np.asarray(motion.position[0], np.float64), float(motion.yaw[0])
+    finite = bool(np.isfinite([*position, yaw]).all())
+    return RootPose.from_yaw(position, yaw) if finite else None

@@ -1,4 +1,4 @@
-"""The world of a plan: robot, data base, scene, settings."""
+"""What contacts are planned for: a robot in scenes, with its data base and the settings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.sampling.database import LegDatabase, leg_database
+from jaxleas.contacts.sampling.database import LegDatabases, leg_databases
 from jaxleas.contacts.sampling.ground import Ground, ground_of
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.stance import Stances
@@ -14,32 +14,27 @@ from jaxleas.dynamics.contact_points import ContactPoints
 from jaxleas.dynamics.equilibrium import robustness_of
 from jaxleas.dynamics.equilibrium_bound import decide_robustness
 from jaxleas.robots import Robot
-from jaxleas.robots.legs import LegModel, legs_of
+from jaxleas.robots.legs import Legs, legs_of
 from jaxleas.terrain.scene import Scene
 
 
 @dataclass(frozen=True, eq=False)
-class World:
+class PlanningCase:
     """Robot, data base, scenes and settings.
 
     Attributes:
-        robot: robot, with its trunk boxes, friction and size of the soles.
-        legs: kinematics and masses of the legs.
-        database: leg configurations.
+        robot: robot, with its trunk boxes.
+        legs: kinematics, soles and masses of the legs.
+        databases: leg configurations.
         ground: polygons of the scenes.
         settings: settings of the planner.
     """
 
     robot: Robot
-    legs: LegModel
-    database: LegDatabase
+    legs: Legs
+    databases: LegDatabases
     ground: Ground
     settings: SamplingSettings
-
-    @property
-    def sole_half_size(self) -> tuple[float, float]:
-        """Half length and half width of the soles [m]; both feet are alike."""
-        return self.robot.effectors[self.robot.feet[0]].half_size
 
     def robustness(
         self, stances: Stances, com: Float[np.ndarray, "N 3"]
@@ -59,31 +54,33 @@ class World:
         return robust
 
     def _contact_points(self, stances: Stances) -> ContactPoints:
-        corners = stances.corners.shape[2]
+        own = np.flatnonzero(self.legs.has_corner)
+        foot = own // stances.corners.shape[2]
         return ContactPoints(
-            stances.corners.reshape(len(stances), -1, 3),
-            np.repeat(stances.rotation[..., 2], corners, axis=1),
-            self.robot.effectors[self.robot.feet[0]].friction,
-            np.repeat(stances.rotation[..., 0], corners, axis=1),
+            stances.corners.reshape(len(stances), -1, 3)[:, own],
+            stances.rotation[..., 2][:, foot],
+            self.legs.friction[foot],
+            stances.rotation[..., 0][:, foot],
             self.settings.friction_generators,
         )
 
 
-def make_world(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> World:
+def make_case(robot: Robot, scenes: Sequence[Scene], settings: SamplingSettings) -> PlanningCase:
     """Return a robot in scenes.
 
     Args:
-        robot: robot with two legs, whose file describes them.
+        robot: robot whose file describes its legs.
         scenes: terrains.
         settings: settings of the planner.
 
     Raises:
-        InputError: the robot's file does not describe two legs that are mirror images.
+        InputError: the robot's file does not describe its legs, or it cannot stand on the others
+            while it moves one of them.
     """
-    return World(
+    return PlanningCase(
         robot,
         legs_of(robot),
-        leg_database(robot, settings.samples, settings.seed),
+        leg_databases(robot, settings.samples, settings.seed),
         ground_of(scenes),
         settings,
     )

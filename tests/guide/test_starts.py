@@ -4,7 +4,7 @@ import pytest
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.guide.places import Places
-from jaxleas.guide.standing import choose_start, require_start
+from jaxleas.guide.starts import choose_start, require_start
 from jaxleas.terrain import rasterise, transition
 from jaxleas.types import InputError
 from tests.guide.walkers import flat_map

@@ -1,15 +1,19 @@
 """MIP and SL1M as judges, on walks whose answer is known."""
 
 from dataclasses import replace
+from typing import get_args
 
 import pytest
 
 from jaxleas.contacts import PlannerError, plan_mip, problem_from_guide
 from jaxleas.contacts.from_guide import NoGroundError, kept_configurations
 from jaxleas.contacts.programs import mip
+from jaxleas.contacts.sampling.plan import Ending
+from jaxleas.contacts.sampling_planner import CAUSE_OF_ENDING
 from jaxleas.labels import MipSettings, Sl1mSettings, judge, judge_over
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
+from jaxleas.types import CAUSES
 from tests.contacts.sampling.worlds import flat, floor, hole, stairs, straight
 
 BOTH = pytest.mark.parametrize("planner", ["mip", "sl1m"])
@@ -21,7 +25,7 @@ def test_a_walk_on_flat_ground_succeeds(planner):
     (verdict,) = judge(planner, flat(), [path])
     assert verdict.decided
     assert verdict.success
-    assert verdict.reason == ""
+    assert (verdict.reason, verdict.cause) == ("", None)
     assert verdict.last_index == len(path) - 1
     assert verdict.reached == 1.0
     assert verdict.steps == len(kept_configurations(len(path), 14)) == 8
@@ -39,18 +43,18 @@ def test_the_last_index_is_the_last_prefix_that_has_a_plan(planner):
     path, scene = straight(4.0), hole()
     (verdict,) = judge(planner, scene, [path])
     assert not verdict.success
-    assert "first not made" in verdict.reason or "leaves the scene" in verdict.reason
+    assert verdict.cause == "no_ground"
     kept = kept_configurations(len(path), 14)
     made = -1
-    for phases in range(1, len(kept)):
-        beginning = path[: kept[phases - 1] + 1]
+    for steps in range(1, len(kept)):
+        beginning = path[: kept[steps - 1] + 1]
         try:
-            problem = problem_from_guide(beginning, scene)
+            problem = problem_from_guide(beginning, scene, "talos")
         except NoGroundError:
             break
         if not plan_mip(problem, diagnose=False).feasible:
             break
-        made = phases - 1
+        made = steps - 1
     assert verdict.last_index == kept[made]
     assert verdict.steps == made + 1
     assert 1.0 < path.position[verdict.last_index, 0] < 2.3
@@ -62,6 +66,7 @@ def test_steps_too_long_for_the_legs_fail_and_shorter_ones_do_not():
         judge("mip", stairs(), [path], MipSettings(keep_every=every))[0] for every in (40, 12)
     )
     assert not long.success
+    assert long.cause == "infeasible"
     assert short.success
 
 
@@ -71,11 +76,11 @@ def test_where_the_scene_ends_the_verdict_ends():
     (verdict,) = judge("mip", short, [straight(4.0)])
     assert verdict.decided
     assert not verdict.success
-    assert "leaves the scene" in verdict.reason
+    assert verdict.cause == "no_ground"
     assert 0 < verdict.last_index < 60
     (nowhere,) = judge("mip", short, [straight(1.0, start=5.0)])
     assert (nowhere.last_index, nowhere.steps, nowhere.mean_step) == (-1, 0, None)
-    assert "cannot stand" in nowhere.reason
+    assert nowhere.cause == "no_start"
 
 
 @BOTH
@@ -102,7 +107,7 @@ def test_no_time_is_no_verdict(planner):
     (verdict,) = judge(planner, stairs(), [straight(3.0, climbing=True)], kind(time_limit=1e-6))
     assert not verdict.decided
     assert not verdict.success
-    assert "time limit" in verdict.reason
+    assert verdict.cause == "time_limit"
 
 
 def test_a_planner_that_breaks_gives_no_verdict(monkeypatch):
@@ -112,6 +117,7 @@ def test_a_planner_that_breaks_gives_no_verdict(monkeypatch):
     monkeypatch.setattr(mip, "plan_mip", broken)
     (verdict,) = judge("mip", flat(), [straight(1.0)])
     assert not verdict.decided
+    assert verdict.cause == "planner_failed"
     assert "no answer" in verdict.reason
 
 
@@ -123,6 +129,9 @@ def test_many_scenes_answer_in_the_order_of_the_paths():
         (alone,) = judge("sampling", scene, [path])
         assert (verdict.success, verdict.last_index) == (alone.success, alone.last_index)
         assert verdict.length == len(path)
+        assert verdict.cause == (None if verdict.success else "no_contact")
+    (nowhere,) = judge("sampling", hole(), [straight(1.0, start=50.0)])
+    assert nowhere.cause == "no_start"
 
 
 def g1_walk(length: float):
@@ -151,3 +160,9 @@ def test_another_biped_is_judged_by_sampling_its_own_legs():
     near, tall = judge("sampling", flat(), [g1_walk(1.0), straight(1.0)], robot="g1")
     assert near.success
     assert not tall.success
+
+
+def test_every_ending_of_a_sampling_plan_has_its_cause():
+    endings = set(get_args(Ending)) - {"reached"}
+    assert set(CAUSE_OF_ENDING) == endings
+    assert set(CAUSE_OF_ENDING.values()) <= set(CAUSES)

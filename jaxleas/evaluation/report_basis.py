@@ -10,7 +10,7 @@ LARGE = "transitions"
 
 
 @dataclass(frozen=True)
-class Stage:
+class ReportBasis:
     """Suites and pictures that share their terrain, and therefore their compiled roll-outs.
 
     Attributes:
@@ -26,8 +26,8 @@ class Stage:
     grounds: Grounds
 
 
-def make_stage(starts: int | None = None, seed: int = 0) -> Stage:
-    """Return the stage of a report.
+def make_report_basis(starts: int | None = None, seed: int = 0) -> ReportBasis:
+    """Return the basis of a report.
 
     Args:
         starts: number of starts per cell; by default each suite's usual number.
@@ -47,4 +47,4 @@ def make_stage(starts: int | None = None, seed: int = 0) -> Stage:
     }
     cells = [*shown.values(), *(cell for suite in suites.values() for cell in suite.cells)]
     steps = {name: suite.steps for name, suite in suites.items()} | {LARGE: like.steps}
-    return Stage(suites, shown, steps, make_grounds(cells))
+    return ReportBasis(suites, shown, steps, make_grounds(cells))

@@ -1,4 +1,4 @@
-"""The figure of a robot: trunk, ranges of motion, what it sees, where it has been."""
+"""The shape of a robot: trunk, ranges of motion, what it sees, where it has been."""
 
 from itertools import product
 from typing import TYPE_CHECKING
@@ -16,13 +16,16 @@ from jaxleas.viewer.terrain_mesh import Mesh
 if TYPE_CHECKING:
     from viser import GlbHandle, PointCloudHandle, ViserServer
 
-    from jaxleas.guide.standing import Pose
+    from jaxleas.types import RootPose
 
 ROBOTS: tuple[Colour, ...] = ((38, 112, 190), (214, 118, 28), (60, 150, 76), (150, 84, 170))
 """Colours of the robots, in order."""
 INVALID: Colour = (205, 40, 50)
-LIMBS: dict[str, Colour] = {"left": (200, 60, 60), "right": (220, 175, 40)}
-OTHER_LIMB: Colour = (120, 120, 120)
+LIMBS: tuple[Colour, ...] = (
+    *((200, 60, 60), (220, 175, 40), (70, 160, 90)),
+    *((140, 90, 180), (60, 165, 180), (140, 100, 70)),
+)
+"""Colours of the limbs, in the robot's order."""
 GOAL: Colour = (30, 150, 60)
 REACH_OPACITY = 0.22
 SEEN_LIFT = 0.02  # height of the dots above the ground, which would hide half of each dot [m]
@@ -30,7 +33,7 @@ LOW, HIGH = np.array([70.0, 30.0, 140.0]), np.array([255.0, 235.0, 40.0])
 """Colours of what the policy sees, from the lowest height it can distinguish to the highest."""
 
 
-class Figure:
+class RobotShape:
     """A robot on the page; `place` moves it as a whole."""
 
     def __init__(self, server: "ViserServer", name: str, robot: Robot, colour: Colour) -> None:
@@ -38,7 +41,7 @@ class Figure:
 
         Args:
             server: server of the page.
-            name: name of the figure's node, such as "/robot_0".
+            name: name of the shape's node, such as "/robot_0".
             robot: robot whose trunk and ranges of motion are drawn.
             colour: colour of the trunk.
         """
@@ -56,20 +59,18 @@ class Figure:
                 server,
                 f"{name}/reach_{limb.name}",
                 hull := mesh_of_hull(limb.range_of_motion.vertices),
-                shade(hull, np.array(LIMBS.get(limb.name, colour), float)),
+                shade(hull, limb_colour(index)),
                 REACH_OPACITY,
             )
-            for limb in robot.limbs
+            for index, limb in enumerate(robot.limbs)
         ]
         self.seen = None
         self.trail = Trail(server, f"/trail{name}", colour)
         self._valid = True
 
-    def place(self, pose: "Pose") -> None:
+    def place(self, pose: "RootPose") -> None:
         """Put the robot at a pose."""
-        half = 0.5 * pose.yaw
-        self._root.position = pose.position
-        self._root.wxyz = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
+        self._root.position, self._root.wxyz = pose.position, pose.quaternion
 
     def mark(self, valid: bool) -> None:
         """Colour the body by whether the configuration is valid."""
@@ -116,6 +117,11 @@ class Figure:
     def show(self, visible: bool) -> None:
         """Show or hide the robot."""
         self._root.visible = visible
+
+
+def limb_colour(index: int) -> Float[np.ndarray, " 3"]:
+    """Return the colour of a limb, by its index; after the last colour they begin again."""
+    return np.array(LIMBS[index % len(LIMBS)], float)
 
 
 def draw_goal(server: "ViserServer", position: Float[np.ndarray, " 3"]) -> "GlbHandle":

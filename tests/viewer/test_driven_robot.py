@@ -1,3 +1,4 @@
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -8,21 +9,20 @@ from jaxleas.export.write import described
 from jaxleas.guide import leas
 from jaxleas.guide.commands import walk_queries
 from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.guide.standing import Pose
 from jaxleas.terrain.atlas import make_atlas
-from jaxleas.types import Query
-from jaxleas.viewer.walker import Walker
+from jaxleas.types import Query, RootPose
+from jaxleas.viewer.driven_robot import DrivenRobot
 from tests.guide.walkers import flat_map, random_policy
 
 POLICY = random_policy(seed=4)
 FEARLESS = SteeringEnv(POLICY.config, lambda _, motion: jnp.ones_like(motion.yaw))
 TERRAIN = flat_map()
-START = Pose(np.array([0.3, -0.2, 0.95]), 0.4)
+START = RootPose.from_yaw(np.array([0.3, -0.2, 0.95]), 0.4)
 GOAL = (30.0, 2.0)
 
 
-def walker(policy=POLICY, env=FEARLESS) -> Walker:
-    made = Walker("some policy", env, policy, make_atlas([TERRAIN]))
+def walker(policy=POLICY, env=FEARLESS) -> DrivenRobot:
+    made = DrivenRobot("some policy", env, policy, make_atlas([TERRAIN]))
     made.reset(START)
     return made
 
@@ -72,7 +72,7 @@ def test_it_arrives_stands_and_walks_on():
 
 def test_an_invalid_configuration_ends_the_walk_until_it_is_reset():
     robot = walker(env=SteeringEnv(POLICY.config))
-    robot.reset(Pose(np.array([0.0, 0.0, 1.4]), 0.0))
+    robot.reset(RootPose.from_yaw(np.array([0.0, 0.0, 1.4]), 0.0))
     assert robot.state == "invalid"
     assert robot.sight.margin < 0.0
     robot.seek(GOAL)
@@ -83,7 +83,7 @@ def test_an_invalid_configuration_ends_the_walk_until_it_is_reset():
 
 def test_it_shows_the_points_it_sees_where_they_are():
     robot = walker()
-    robot.reset(Pose(np.array([1.0, 2.0, 0.95]), np.pi / 2))
+    robot.reset(RootPose.from_yaw(np.array([1.0, 2.0, 0.95]), np.pi / 2))
     points = robot.points_seen()
     np.testing.assert_allclose(points[:, :2], FEARLESS.layout.points_in_root)
     assert points[:, 2] == pytest.approx(-0.95, abs=1e-6)  # level ground, nothing clipped
@@ -91,8 +91,19 @@ def test_it_shows_the_points_it_sees_where_they_are():
 
 def test_it_moves_evenly_between_configurations_and_the_short_way_round():
     robot = walker()
-    robot.before = Pose(np.array([0.0, 0.0, 1.0]), 3.1)
-    robot.pose = Pose(np.array([1.0, 0.0, 2.0]), -3.1)
+    robot.before = RootPose.from_yaw(np.array([0.0, 0.0, 1.0]), 3.1)
+    robot.pose = RootPose.from_yaw(np.array([1.0, 0.0, 2.0]), -3.1)
     half = robot.between(0.5)
     assert half.position == pytest.approx([0.5, 0.0, 1.5])
-    assert half.yaw == pytest.approx(np.pi)
+    assert np.cos(half.yaw) == pytest.approx(-1.0)
+
+
+def test_a_policy_that_answers_with_no_number_leaves_the_robot_where_it_was():
+    robot = walker()
+    robot.reset(START)
+    robot.seek((2.0, 0.0))
+    robot._move = lambda heights, motion, goal: jax.tree.map(lambda leaf: leaf * jnp.nan, motion)
+    with jax.debug_nans(False):
+        robot.step()
+    assert robot.state == "invalid"
+    np.testing.assert_allclose(robot.pose.position, START.position)

@@ -1,20 +1,22 @@
 """Where a robot begins: a valid place with room around it, or a given place."""
 
+import math
+
 import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import minimum_filter
 
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.guide.places import Places, Pose
+from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError
+from jaxleas.types import InputError, RootMotion, RootPose
 
 MOST_PLACES = 5_000
 SPACING = 0.25  # distance between places that are tried [m]; wider on larger maps
 ROOM = 5  # places along each side of a square of valid places; the robot begins in its middle
 
 
-def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
+def choose_start(env: SteeringEnv, terrain: HeightMap) -> RootPose:
     """Return the valid standing pose with room around it that is farthest back (least x).
 
     The robot faces along x; among equals the pose nearest to the middle of the map's width is
@@ -43,7 +45,9 @@ def choose_start(env: SteeringEnv, terrain: HeightMap) -> Pose:
     return places.pose(chosen[np.argmin(rank)], 0.0)
 
 
-def require_start(env: SteeringEnv, terrain: HeightMap, start: tuple[float, float, float]) -> Pose:
+def require_start(
+    env: SteeringEnv, terrain: HeightMap, start: tuple[float, float, float]
+) -> RootPose:
     """Return the standing pose at a place, if it is valid.
 
     Args:
@@ -71,6 +75,31 @@ def require_start(env: SteeringEnv, terrain: HeightMap, start: tuple[float, floa
     raise InputError(
         f"{where}: {problem}; the nearest valid place is {x:.2f} {y:.2f} {np.degrees(heading):.4g}"
     )
+
+
+def start_motion(
+    places: Places, start: tuple[float, float], goal: tuple[float, float], yaw: float | None
+) -> RootMotion:
+    """Return the root motion of a robot at rest at the start.
+
+    Args:
+        places: places of the terrain where the robot can stand.
+        start: start x, y [m].
+        goal: goal x, y [m].
+        yaw: heading [rad]; None takes the valid heading nearest to the direction of the goal.
+
+    Raises:
+        InputError: the robot cannot stand there.
+    """
+    if yaw is None:
+        facing = math.atan2(goal[1] - start[1], goal[0] - start[0])
+        headings = facing + np.array(sorted(HEADINGS, key=abs))
+        valid = places.valid(np.tile(start, (len(headings), 1)), headings)
+        yaw = float(headings[np.argmax(valid)]) if valid.any() else None
+    pose = places.require_valid("--from", start, yaw)
+    heading = float(pose.yaw) if yaw is None else yaw
+    motion = places.standing(np.array([start]), np.array([heading]))
+    return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])
 
 
 def _lattice(terrain: HeightMap) -> Float[np.ndarray, "R C 2"]:

@@ -13,10 +13,10 @@ FOR_PICTURE = 10.0
 """Time limit for drawing how far a failed plan could go [s]."""
 
 
-def write_outcome(
+def report_plan(
     answer: ContactPlan, asked: ContactProblem | AskedGuide, out: Path, picture: Path | None
 ) -> ContactPlan:
-    """Write a plan, draw it, and print its outcome."""
+    """Write a plan, draw it, and print what came of it."""
     write_plan(out, answer)
     if isinstance(asked, ContactProblem):
         if picture is not None:
@@ -24,28 +24,28 @@ def write_outcome(
         words = describe(asked, answer)
     else:
         if picture is not None:
-            draw_walk(picture, answer, asked)
-        words = describe_walk(asked.guide, answer)
+            draw_along_guide(picture, answer, asked)
+        words = describe_along_guide(asked.guide, answer)
     print(f"{words}\nwritten to {out}")
     return answer
 
 
 def describe(problem: ContactProblem, found: ContactPlan) -> str:
-    """Return a plan's outcome in one line."""
+    """Return a description of a plan in one line."""
     tried = ""
     if found.undecided is not None:
         tried = f", {found.undecided} undecided, {found.combinations} combinations"
-    timing = f"{len(problem)} phases in {1000.0 * found.seconds:.0f} ms{tried}"
+    timing = f"{len(problem)} steps in {1000.0 * found.seconds:.0f} ms{tried}"
     if found.feasible:
         return f"{found.planner}: feasible, {timing}, certified to {found.max_violation:.1g} m"
     reach = ""
     if found.last_feasible_phase is not None:
-        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} phases can be made)"
+        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} steps can be made)"
     return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
 
 
-def describe_walk(guide: GuidePath, found: ContactPlan) -> str:
-    """Return a sampling plan's outcome in one line."""
+def describe_along_guide(guide: GuidePath, found: ContactPlan) -> str:
+    """Return a description of a sampling plan in one line."""
     postures = found.postures or ()
     steps = f"{len(found.surfaces)} steps in {1000.0 * found.seconds:.0f} ms"
     if found.robustness:
@@ -66,16 +66,16 @@ def draw(
     draw_plan(picture, problem, found, guide, _as_far_as_it_goes(problem, found))
 
 
-def draw_walk(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
+def draw_along_guide(picture: Path, found: ContactPlan, asked: AskedGuide) -> None:
     """Draw a plan that follows a guide path."""
-    from jaxleas.contacts.plan_sampling import walked_problem
+    from jaxleas.contacts.plan_sampling import problem_of_steps
 
-    steps = walked_problem(found, asked.guide, asked.scene, load_robot(asked.robot))
+    steps = problem_of_steps(found, asked.guide, asked.scene, load_robot(asked.robot))
     draw(picture, steps, found, asked.guide)
 
 
 def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:
-    """Plan the phases before the first that cannot be made, for a picture."""
+    """Plan the steps before the first that cannot be made, for a picture."""
     count = 0 if found.last_feasible_phase is None else found.last_feasible_phase + 1
     if found.feasible or found.planner not in PLANNERS or not 0 < count < len(problem):
         return None

@@ -7,12 +7,12 @@ import optax
 import pytest
 from jax.flatten_util import ravel_pytree
 
-from jaxleas.training.adam import descend
 from jaxleas.training.config import PpoConfig
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import learning_rate, make_optimiser
+from jaxleas.xla.adam import descend
 
-from .runs import SteeringRun
+from ..training.runs import SteeringRun
 
 WEIGHTS = {"kernel": jnp.ones((5, 3)), "bias": jnp.zeros(3)}
 
