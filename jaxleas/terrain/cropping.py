@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from jaxleas.geometry.clipping import clip_polygon
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Polytope, clip_polygon
 from jaxleas.terrain.polygons import MIN_AREA, polygon_area_vector
 from jaxleas.terrain.reading import Rectangle
 from jaxleas.terrain.scene import Polygons, Scene, Touch
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.terrain.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import lines_of, shown, vectors
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _BATCH = 100_000  # faces parsed at a time, to save memory
 _AFTER_SLASH = re.compile(rb"/\S*")  # texture and normal of a corner
