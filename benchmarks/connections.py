@@ -18,13 +18,8 @@ import numpy as np
 from benchmarks.measurements import Figure, Measurement, Metric, this_machine, write_measurements
 from benchmarks.timing import seconds_a_call
 from jaxleas.cli_guard import run_guarded
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.guide import rb_kino
-from jaxleas.guide.double_integrator import axis_times, connect
-from jaxleas.guide.navigation_command import make_navigator
-from jaxleas.guide.roadmaps import Places
-from jaxleas.guide.roadmaps.connections import BATCH, one
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.guide import BATCH, KINO, Places, axis_times, connect, make_navigator, one, rb_kino
 from jaxleas.terrain import rasterise, transition
 from jaxleas.types import RootMotion
 from tests.guide.integrator_twin import can_last, least_time_twin, random_connections
@@ -54,7 +49,7 @@ def tried(runs: int) -> list[float]:
     env = SteeringEnv(SteeringConfig())
     places = Places(env, rasterise(transition("rubble", 0).scene))
     method = rb_kino(env.config.limits, env.config.desired_speed)
-    connector = make_navigator(places, method, "kino", "rrt").connector
+    connector = make_navigator(places, method, KINO.edges, "rrt").connector
     random = np.random.default_rng(0)
     origin = places.draw(random, BATCH)
     angle = random.uniform(-np.pi, np.pi, BATCH)

@@ -19,22 +19,30 @@ from pathlib import Path
 import numpy as np
 
 from jaxleas.cli_guard import run_guarded
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
-from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import CellResult, Evaluation, now, wilson_interval, write_evaluation
 from jaxleas.files import atomic_path
-from jaxleas.guide.commands import steering_named
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.navigation_command import make_navigator, start_motion
-from jaxleas.guide.picture import PATH
-from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
-from jaxleas.guide.roadmaps.exact import scene_of
-from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.seeds import EVALUATION_SEED
+from jaxleas.guide import (
+    KINO,
+    LEAS,
+    PATH,
+    Budget,
+    Edges,
+    Method,
+    Navigation,
+    Navigator,
+    Places,
+    load_policy,
+    make_navigator,
+    policy_file,
+    scene_of,
+    start_motion,
+)
+from jaxleas.terrain import EVALUATION_SEED, import_terrain
 
-METHODS: dict[str, str] = {"leas_p1": "leas", "rb_kino": "kino"}
-TITLES = {"leas_p1": "LEAS", "rb_kino": "RB-Kino"}
-COLOURS = {"leas_p1": PATH, "rb_kino": "tab:orange"}
+METHODS: dict[str, Method] = {LEAS.key: LEAS, KINO.key: KINO}
+TITLES = {LEAS.key: "LEAS", KINO.key: KINO.title}
+COLOURS = {LEAS.key: PATH, KINO.key: "tab:orange"}
 CLEARANCE = 0.3
 """Extent of the ground around each end of a pair [m], so that none is on top of a box."""
 HOURS = 3600.0
@@ -153,7 +161,7 @@ def draw(path: Path, places: Places, rows: Sequence[Row], pairs: np.ndarray, lim
     """Draw success against connections, the methods' numbers of waypoints, and all pairs."""
     from matplotlib.figure import Figure
 
-    from jaxleas.terrain.draw import draw_height_map
+    from jaxleas.terrain import draw_height_map
 
     figure = Figure(figsize=(14, 6.4), layout="constrained")
     curve, arena = figure.subplots(1, 2, width_ratios=(1.0, 1.05))
@@ -232,9 +240,9 @@ def main() -> None:
     pairs = draw_pairs(places, given.seed, given.pairs)
     navigators = {
         name: make_navigator(
-            places, steering_named(kind, env, policy), kind, given.planner, scene, given.reach
+            places, each.make(env, policy), _edges(each, given.reach), given.planner, scene
         )
-        for name, kind in METHODS.items()
+        for name, each in METHODS.items()
         if name in given.methods
     }
     partial = given.json.with_suffix(".partial.jsonl")
@@ -281,6 +289,10 @@ def main() -> None:
         draw(given.picture, places, rows, pairs, given.connections)
     partial.unlink()
     print("\n" + summary(rows, len(pairs)))
+
+
+def _edges(method: Method, reach: float | None) -> Edges:
+    return method.edges if reach is None else replace(method.edges, reach=reach)
 
 
 def _row(index: int, method: str, found: Navigation) -> Row:

@@ -60,7 +60,7 @@ def arguments_of(function: Callable[..., Any], given: argparse.Namespace) -> dic
     """
     values = dict(vars(given))
     for name, hint in typing.get_type_hints(function).items():
-        if is_dataclass(hint) and isinstance(hint, type):
+        if name != "return" and is_dataclass(hint) and isinstance(hint, type):
             values[name] = hint(**{each.name: values.pop(each.name) for each in fields(hint)})
     return values
 

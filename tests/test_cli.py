@@ -239,7 +239,7 @@ class Shoes:
     laces: bool = True
 
 
-def stroll(policy: Path, *, shoes: Shoes = Shoes(), steps: int = 3) -> None:
+def stroll(policy: Path, *, shoes: Shoes = Shoes(), steps: int = 3) -> Shoes:
     """Stroll.
 
     Args:
@@ -248,6 +248,7 @@ def stroll(policy: Path, *, shoes: Shoes = Shoes(), steps: int = 3) -> None:
         steps: number of steps.
     """
     CALLS.append(dict(locals()))
+    return shoes  # a value of named fields that is returned is no option
 
 
 def test_a_value_of_named_fields_is_one_option_per_field(monkeypatch, capsys):

@@ -29,7 +29,7 @@ import trimesh
 from PIL import Image
 
 from jaxleas import cli
-from jaxleas.contacts import problem_from_guide
+from jaxleas.contacts import Stepping, problem_from_guide
 from jaxleas.contacts.problem_file import write_problem
 from jaxleas.files import write_json
 from jaxleas.guide.files import write_guide_paths
@@ -133,7 +133,9 @@ def _fill_here() -> None:
     for name, count in (("guide", 1), ("GUIDE", 1), ("guides", 2), ("paths", 2)):
         write_guide_paths(f"{name}.npz", guides[:count], ["reached"] * count)
     for name in ("problem", "PROBLEM"):
-        write_problem(f"{name}.json", problem_from_guide(guides[0], scene, every=14))
+        write_problem(
+            f"{name}.json", problem_from_guide(guides[0], scene, "talos", Stepping(every=14))
+        )
     slab = trimesh.creation.box((22.0, 12.0, 0.2))
     slab.apply_translation((9.0, 4.0, -0.1))
     for name in ("my_terrain", "hall", "arena"):

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.contacts.rows import Row, milliseconds
-from jaxleas.contacts import ContactProblem, plan_mip, problem_from_guide
+from jaxleas.contacts import ContactProblem, Stepping, plan_mip, problem_from_guide
 from jaxleas.terrain import Scene, transition
 from jaxleas.types import GuidePath
 
@@ -45,7 +45,7 @@ def course_problem(scene: Scene, roots: np.ndarray, steps: int) -> ContactProble
     position = roots[: steps + 1]
     still = np.zeros(len(position))
     guide = GuidePath(still, position, still, np.zeros_like(position), still == 0.0)
-    return problem_from_guide(guide, scene, every=1)
+    return problem_from_guide(guide, scene, "talos", Stepping(every=1))
 
 
 def with_and_without_guide(patience: float) -> Iterator[Row]:

@@ -13,9 +13,7 @@ from benchmarks.contacts.l1 import START, cost_map, scenario_a, scenario_a2, sce
 from benchmarks.contacts.samples import KEPT
 from benchmarks.contacts.samples import SAMPLES as COUNTS
 from benchmarks.measurements import Measurement
-from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.problem_file import parse_problem
-from jaxleas.contacts.programs.attempt import attempt
+from jaxleas.contacts import ContactProblem, attempt, parse_problem
 from jaxleas.files import atomic_path
 
 if TYPE_CHECKING:
@@ -115,7 +113,7 @@ def _figures_5_10_to_13() -> "Figure":
 def _scenario(ax: "Axes", title: str, problem: ContactProblem, phase: int) -> None:
     found = attempt(problem, pruning=False)
     assert found.relaxed is not None
-    _cost(ax, problem, problem.phases[phase].candidates, (-0.35, 1.45, -0.6, 0.7))
+    _cost(ax, problem, problem.steps[phase].candidates, (-0.35, 1.45, -0.6, 0.7))
     placed = None if found.placement is None else found.placement.footholds
     for feet, filled in ((found.relaxed.footholds, False), (placed, True)):
         for index, point in enumerate(() if feet is None else feet):

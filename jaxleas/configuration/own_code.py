@@ -8,7 +8,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from jaxleas.types.errors import JaxleasError, OwnCodeError
+from jaxleas.types import JaxleasError, OwnCodeError
 
 LONGEST = 240
 """Longest part of another library's message that is repeated, in characters."""

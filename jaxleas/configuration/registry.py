@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from jaxleas.configuration.own_code import describe
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Item = TypeVar("Item")
 

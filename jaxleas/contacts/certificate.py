@@ -1,7 +1,7 @@
 """The certificate: every constraint of a problem, recomputed for a plan in metres.
 
-Shares no code with the planners: it reads the problem's value and does plain arithmetic, phase by
-phase, exactly as the format states the constraints (docs/contacts.md).
+Shares no code with the planners: it reads the problem's value and does plain arithmetic, step by
+step, exactly as the format states the constraints (docs/contacts.md).
 """
 
 import math
@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _Foot = tuple[str, np.ndarray, float]  # name, position [m], yaw [rad]
 TOLERANCE = 1e-6
@@ -25,13 +25,18 @@ class Violation:
 
     Attributes:
         metres: amount by which it is violated [m].
-        phase: index of the phase that violates it.
+        step: index of the step that violates it.
         constraint: name of the constraint, in a few words.
     """
 
     metres: float
-    phase: int
+    step: int
     constraint: str
+
+    @property
+    def phase(self) -> int:
+        """The former name of `step`."""
+        return self.step
 
     @property
     def certified(self) -> bool:
@@ -43,14 +48,14 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
     """Return the constraint that `plan` violates most.
 
     Raises:
-        InputError: the plan does not fit this problem (number of phases, surfaces, com).
+        InputError: the plan does not fit this problem (number of steps, surfaces, com).
     """
     footholds = _require_fitting(problem, plan)
     stances = {name: (pose.position, pose.yaw) for name, pose in problem.initial.items()}
     worst = Violation(-math.inf, 0, "")
-    for index, (phase, point) in enumerate(zip(problem.phases, footholds, strict=True)):
-        others = {name: stance for name, stance in stances.items() if name != phase.foot}
-        landing = phase.foot, point, phase.yaw
+    for index, (step, point) in enumerate(zip(problem.steps, footholds, strict=True)):
+        others = {name: stance for name, stance in stances.items() if name != step.foot}
+        landing = step.foot, point, step.yaw
         found = _on_surface(problem.surfaces[plan.surfaces[index]].vertices, point)
         for name, (standing, yaw) in others.items():
             found += _step(problem, landing, (name, standing, yaw))
@@ -60,7 +65,7 @@ def certify(problem: ContactProblem, plan: ContactPlan) -> Violation:
             for number in (0, 1):
                 feet = (name, standing, yaw), landing
                 found += _com(problem, plan.com[index, number], number, feet)
-        stances[phase.foot] = (point, phase.yaw)
+        stances[step.foot] = (point, step.yaw)
         metres, constraint = max(found)
         if metres > worst.metres:
             worst = Violation(float(metres), index, constraint)
@@ -102,7 +107,8 @@ def _com(
         found.append((_excess(reach.normals, reach.offsets, local), text))
     name, position, yaw = feet[number]  # c0 over the standing foot, c1 over the landed one
     local = _turn_back(com - position, yaw)
-    over = max(abs(local[0]) - problem.foot_half_size[0], abs(local[1]) - problem.foot_half_size[1])
+    half_length, half_width = problem.half_sizes[name]
+    over = max(abs(local[0]) - half_length, abs(local[1]) - half_width)
     found.append((float(over), f"centre of mass c{number} over {name}"))
     return found
 
@@ -118,22 +124,22 @@ def _excess(A: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
 
 
 def _require_fitting(problem: ContactProblem, plan: ContactPlan) -> Float[np.ndarray, "n 3"]:
-    count = len(problem.phases)
+    count = len(problem.steps)
     if not plan.feasible or plan.footholds is None:
         raise InputError(f"this plan is '{plan.status}' and has no footholds to check")
     if len(plan.surfaces) != count or plan.footholds.shape != (count, 3):
         raise InputError(
             f"the plan has {len(plan.surfaces)} surfaces and {len(plan.footholds)} footholds,"
-            f" the problem {count} phases"
+            f" the problem {count} steps"
         )
-    for index, (name, phase) in enumerate(zip(plan.surfaces, problem.phases, strict=True)):
-        if name not in phase.candidates:
+    for index, (name, step) in enumerate(zip(plan.surfaces, problem.steps, strict=True)):
+        if name not in step.candidates:
             raise InputError(
-                f"phase {index} of the plan stands on '{name}', which is none of the problem's"
-                f" candidates there: {', '.join(phase.candidates)}"
+                f"step {index} of the plan stands on '{name}', which is not among the problem's"
+                f" candidates there: {', '.join(step.candidates)}"
             )
     if problem.model == "two_com" and (plan.com is None or plan.com.shape != (count, 2, 3)):
-        raise InputError("the plan lacks 'com', two positions a phase, which model two_com needs")
+        raise InputError("the plan lacks 'com', two positions per step, which model two_com needs")
     numbers = [plan.footholds] if plan.com is None else [plan.footholds, plan.com]
     if not all(np.isfinite(each).all() for each in numbers):
         raise InputError("the plan holds a number that is not finite")

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
-from jaxleas.contacts.outcome import draw_walk
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide
+from jaxleas.contacts.plan_report import draw_along_guide
+from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
-from jaxleas.robots import load_robot
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.robots import DEFAULT_ROBOT, load_robot
+from jaxleas.terrain import load_scene
+from jaxleas.types import InputError, JaxleasError
 
 
 class NotCertifiedError(JaxleasError):
@@ -66,12 +66,12 @@ def check_postures(
 
     certificate = certify_postures(read, asked.guide, asked.scene, load_robot(asked.robot))
     if picture is not None:
-        draw_walk(picture, read, asked)
+        draw_along_guide(picture, read, asked)
     if not certificate.certified:
         raise NotCertifiedError(f"{plan} is no plan for {what}: {certificate.complaint}")
     worst, end = certificate.worst, "" if read.feasible else f", which end early: {read.reason}"
     print(
         f"{plan} is certified: {len(read.postures or ())} postures, nothing violated (tightest:"
-        f" {worst.constraint}, posture {worst.phase}: {worst.metres:.3g} m), least robustness"
+        f" {worst.constraint}, posture {worst.step}: {worst.metres:.3g} m), least robustness"
         f" {certificate.least_robustness:.3g} N{end}"
     )

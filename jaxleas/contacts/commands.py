@@ -5,17 +5,19 @@ from typing import Any
 
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
-from jaxleas.contacts.from_guide import Candidates, problem_from_guide
-from jaxleas.contacts.outcome import draw, write_outcome
+from jaxleas.contacts.from_guide import Candidates, Stepping, problem_from_guide
+from jaxleas.contacts.models import model_note
 from jaxleas.contacts.plan import ContactPlan, read_plan
-from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuide, Planner
+from jaxleas.contacts.plan_report import draw, report_plan
+from jaxleas.contacts.planner import AskedGuide, Planner
 from jaxleas.contacts.planner_settings import plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types.errors import InputError
+from jaxleas.robots import DEFAULT_ROBOT
+from jaxleas.terrain import load_scene
+from jaxleas.types import InputError
 
 
 def plan(
@@ -33,12 +35,12 @@ def plan(
 
     Args:
         problem: the contact problem, .json.
-        planner: planner to use; one that follows guide paths walks along the roots of the phases.
+        planner: planner to use; one that follows guide paths walks along the roots of the steps.
         out: the plan, .json; without footholds, but with the reason, when there is no plan.
         time_limit: time limit [s]; a plan not found in time has the status time_limit.
         cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
             quadratic distance; none by default.
-        without_guide: allow every surface in every phase but the last.
+        without_guide: allow every surface in every step but the last.
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
@@ -51,11 +53,11 @@ def plan(
     if found.needs == "guide":
         followed = along_roots(asked)
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return write_outcome(answer, followed, out, picture)
+        return report_plan(answer, followed, out, picture)
     if without_guide:
         asked = asked.without_guide()
     answer = found.plan(asked, settings, time_limit=time_limit)
-    return write_outcome(answer, asked, out, picture)
+    return report_plan(answer, asked, out, picture)
 
 
 def check(
@@ -95,10 +97,10 @@ def check(
     worst = certify(asked, read)
     if picture is not None:
         draw(picture, asked, read)
-    verdict = f"{worst.constraint}, phase {worst.phase}: {worst.metres:.3g} m"
+    verdict = f"{worst.constraint}, step {worst.step}: {worst.metres:.3g} m"
     if not worst.certified:
         raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
-    print(f"{plan} is certified: {len(asked)} phases, nothing violated (tightest: {verdict})")
+    print(f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {verdict})")
 
 
 def contacts(
@@ -123,13 +125,14 @@ def contacts(
 
     Args:
         guide: the guide path, .npz.
-        scene: its terrain as polygons: .json scene, or .stl or .obj mesh in metres, z up.
+        scene: its terrain as polygons: .json scene, or a mesh in metres, z up.
         planner: planner to use; those that need a contact problem get one made of the guide.
         out: the plan, .json.
         problem: file to write the contact problem to, too, .json.
         query: number of the path in the file.
         robot: robot whose step polytopes are used.
-        model: two_com (with the centre of mass, the default) or feet.
+        model: two_com (with the centre of mass) or feet; by default two_com where the robot has two
+            feet and step polytopes of its centre of mass.
         every: keep every N-th configuration; by default the planner's own number.
         candidates: surfaces in a window around the root (the default), or in the moving leg's
             range of motion (rom).
@@ -147,19 +150,21 @@ def contacts(
     options = {"model": model, "candidates": candidates, "window": window}
     given = {"cost": _wanted(cost), "max_combinations": max_combinations}
     if every is not None and every < 1:
-        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
+        raise InputError(f"every {every} must be at least 1: every N-th configuration is kept")
     if found.needs == "guide":
         _require_own_contacts(found, problem=problem, **options, cost=given["cost"])
         settings = plan_settings_from(found, keep_every=every, **given)
         followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return write_outcome(answer, followed, out, picture)
+        return report_plan(answer, followed, out, picture)
     settings = plan_settings_from(found, **given)
     followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
     made = _problem(found, followed, every, options)
+    if note := model_note(model, robot):
+        print(note)
     if problem is not None:
         write_problem(problem, made)
-    return write_outcome(found.plan(made, settings, time_limit=time_limit), made, out, picture)
+    return report_plan(found.plan(made, settings, time_limit=time_limit), made, out, picture)
 
 
 def _problem(
@@ -170,9 +175,8 @@ def _problem(
     return problem_from_guide(
         asked.guide,
         asked.scene,
-        robot=asked.robot,
-        every=planner.settings().keep_every if every is None else every,
-        **chosen,
+        asked.robot,
+        Stepping(every=planner.settings().keep_every if every is None else every, **chosen),
     )
 
 

@@ -1,22 +1,28 @@
 """From a guide path and a scene to a contact problem: motion before contact (T 5.2.2, 5.2.3)."""
 
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.contacts.models import default_model
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes
-from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Phase
-from jaxleas.contacts.programs.steps import rotation
+from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Step
+from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.geometry import (
+    Box,
+    Polytope,
+    clip_polygon,
+    pack_polygons,
+    polygons_meet_polytope,
+    wrap_angle_on_host,
+)
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.polygons import polygon_area_vector
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene, polygon_area_vector
 from jaxleas.types import GuidePath, InputError
 
 Candidates = Literal["window", "rom"]
@@ -30,98 +36,126 @@ MOST_ASIDE = 0.2
 """A foot that finds no ground within this distance [m] of its reference place cannot stand."""
 
 
+@dataclass(frozen=True)
+class Stepping:
+    """How a guide path becomes steps.
+
+    Attributes:
+        model: "two_com" or "feet"; by default "two_com" for two feet with polytopes of the centre
+            of mass, and "feet" for any others.
+        every: number N: every N-th configuration is kept.
+        candidates: "window": parts of surfaces in a square around the root, turned with it; "rom":
+            parts of surfaces in the range of motion of the leg that moves.
+        window: length of the edges of the square [m].
+        first_foot: name of the foot that moves first; the robot's first foot by default.
+
+    Raises:
+        InputError: a number is out of range.
+    """
+
+    model: Model | None = None
+    every: int = EVERY
+    candidates: Candidates = "window"
+    window: float = WINDOW
+    first_foot: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.every < 1:
+            raise InputError(
+                f"every {self.every} must be at least 1: every N-th configuration is kept"
+            )
+        if not 0.0 < self.window < 100.0:
+            raise InputError(f"window {self.window} must be an edge in metres, 0.8 is usual")
+
+
 class NoGroundError(InputError):
     """The scene has nothing to stand on at one of the kept configurations.
 
     Attributes:
-        phase: phase that finds no candidate; -1 if the feet have no place to start from.
+        step: step that finds no candidate; -1 if the feet have no place to start from.
     """
 
-    def __init__(self, message: str, phase: int) -> None:
+    def __init__(self, message: str, step: int) -> None:
         super().__init__(message)
-        self.phase = phase
+        self.step = step
 
     def __reduce__(self) -> tuple:
-        return type(self), (str(self), self.phase)
+        return type(self), (str(self), self.step)
+
+
+DEFAULT_STEPPING = Stepping()
 
 
 def problem_from_guide(
     guide: GuidePath,
     scene: Scene,
+    robot: str,
+    stepping: Stepping = DEFAULT_STEPPING,
     *,
-    robot: str = "talos",
-    model: Model = "two_com",
-    every: int = EVERY,
-    candidates: Candidates = "window",
-    window: float = WINDOW,
-    first_foot: str | None = None,
     polytopes: StepPolytopes | None = None,
 ) -> ContactProblem:
     """Make one step of each kept configuration; its foot is oriented as the root is there.
 
-    The feet first stand on the ground beside the first configuration; configurations `every`, 2
-    `every`, ... and the last of the guide are kept, and feet move in turn, in the robot's order.
+    The feet first stand on the ground beside the first configuration; configurations N, 2 N, ...
+    and the last of the guide are kept, where N is `stepping.every`. Feet move in turn, in the
+    robot's order.
 
     Args:
         guide: guide path to follow.
         scene: scene whose surfaces the guide crosses.
         robot: name of the robot.
-        model: "two_com" or "feet".
-        every: number N: every N-th configuration is kept.
-        candidates: "window": parts of surfaces in a square around the root, turned with it; "rom":
-            parts of surfaces in the range of motion of the leg that moves.
-        window: edge of the square [m].
-        first_foot: name of the foot that moves first; the robot's first foot by default.
+        stepping: how the guide path becomes steps.
         polytopes: step polytopes to use instead of the robot's own.
 
     Raises:
         InputError: the guide is too short or not finite.
         NoGroundError: the guide leaves the scene; says where.
     """
-    _require_usable(guide, every, window)
+    _require_usable(guide)
     described = load_robot(robot)
     feet = described.foot_names
-    turn = _first(described, feet, first_foot)
+    turn = _first(described, feet, stepping.first_foot)
     surfaces = {
         name: make_surface(vertices, f"surface '{name}' of the scene")
         for name, vertices in scene.walkable.items()
     }
     initial = _initial(guide, surfaces, described)
-    finder = _Finder(surfaces, described, window, candidates)
-    phases, parts = [], {}
-    for index in kept_configurations(len(guide), every):
-        foot = feet[(turn + len(phases)) % len(feet)]
+    finder = _Finder(surfaces, described, stepping)
+    steps, parts = [], {}
+    for index in kept_configurations(len(guide), stepping.every):
+        foot = feet[(turn + len(steps)) % len(feet)]
         found = finder.find(guide.position[index], float(guide.yaw[index]), foot)
         if not found:
             x, y, z = guide.position[index]
             raise NoGroundError(
                 f"the guide leaves the scene: around configuration {index}, with its root at"
                 f" ({x:.2f}, {y:.2f}, {z:.2f}), no surface is a candidate for {foot}",
-                len(phases),
+                len(steps),
             )
-        names = [_add(surfaces, parts, len(phases), *each) for each in found]
-        phases.append(
-            Phase(
+        names = [_add(surfaces, parts, len(steps), *each) for each in found]
+        steps.append(
+            Step(
                 foot,
                 float(wrap_angle_on_host(guide.yaw[index])),
                 tuple(names),
                 guide.position[index],
             )
         )
+    reach = load_step_polytopes(robot) if polytopes is None else polytopes
     return ContactProblem(
         robot=robot,
-        model=model,
+        model=stepping.model or default_model(feet, reach.com),
         surfaces=surfaces,
         initial=initial,
-        phases=tuple(phases),
-        polytopes=load_step_polytopes(robot) if polytopes is None else polytopes,
-        foot_half_size=described.foot_half_size,
+        steps=tuple(steps),
+        polytopes=reach,
+        half_sizes={foot: described.effector(foot).half_size for foot in feet},
         parts=parts,
     )
 
 
 def kept_configurations(length: int, every: int) -> list[int]:
-    """Return the configurations of a guide that phases are made of: every N-th, and the last.
+    """Return the configurations of a guide that steps are made of: every N-th, and the last.
 
     Args:
         length: number of configurations of the guide.
@@ -133,14 +167,14 @@ def kept_configurations(length: int, every: int) -> list[int]:
 def _add(
     surfaces: dict[str, ContactSurface],
     parts: dict[str, str],
-    phase: int,
+    step: int,
     whole: str,
     part: ContactSurface | None,
 ) -> str:
     """Add the part of a surface that is a candidate, unless it is the whole; return its name."""
     if part is None:
         return whole
-    name = f"{whole}@{phase}"
+    name = f"{whole}@{step}"
     while name in surfaces:  # a scene itself may use such names
         name += "'"
     surfaces[name], parts[name] = part, whole
@@ -154,17 +188,16 @@ class _Finder:
         self,
         surfaces: dict[str, ContactSurface],
         robot: Robot,
-        window: float,
-        candidates: Candidates,
+        stepping: Stepping,
     ) -> None:
         self.names = list(surfaces)
         self.corners = [surface.vertices for surface in surfaces.values()]
         self.packed = pack_polygons(self.corners)
         reach = [robot.limbs[index].range_of_motion for index in robot.feet]
-        if candidates == "window":
+        if stepping.candidates == "window":
             low = min(float(each.vertices[:, 2].min()) for each in reach)
             high = max(float(each.vertices[:, 2].max()) for each in reach)
-            half = 0.5 * window
+            half = 0.5 * stepping.window
             square = Polytope.from_box(Box((-half, -half, low), (half, half, high)))
             reach = [square] * len(reach)
         self.reach: dict[str, Polytope] = dict(zip(robot.foot_names, reach, strict=True))
@@ -251,11 +284,7 @@ def _first(robot: Robot, feet: tuple[str, ...], first_foot: str | None) -> int:
     return feet.index(first_foot)
 
 
-def _require_usable(guide: GuidePath, every: int, window: float) -> None:
-    if every < 1:
-        raise InputError(f"every {every} must be at least 1: one configuration of so many is kept")
-    if not 0.0 < window < 100.0:
-        raise InputError(f"window {window} must be an edge in metres, 0.8 is usual")
+def _require_usable(guide: GuidePath) -> None:
     if len(guide) < 2:
         raise InputError(f"the guide has {len(guide)} configurations; a step needs at least 2")
     if not (np.isfinite(guide.position).all() and np.isfinite(guide.yaw).all()):

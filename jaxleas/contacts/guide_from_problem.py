@@ -6,8 +6,7 @@ import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.robots import load_robot
-from jaxleas.terrain.polygons import is_vertical
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene, is_vertical
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2
@@ -19,31 +18,31 @@ but at most this far below and above the robot's walking height [m]."""
 
 
 def guide_from_problem(problem: ContactProblem) -> GuidePath:
-    """Return a guide path through the roots of all phases, straight from each to the next.
+    """Return a guide path through the roots of all steps, straight from each to the next.
 
     It starts above the middle between the feet's first places, heading as they do.
 
     Args:
-        problem: problem in which each phase has a root.
+        problem: problem in which each step has a root.
 
     Raises:
-        InputError: a phase has no root.
+        InputError: a step has no root.
     """
-    for index, phase in enumerate(problem.phases):
-        if phase.root is None:
+    for index, step in enumerate(problem.steps):
+        if step.root is None:
             raise InputError(
-                f"phase {index} has no root: the sampling planner follows a guide path, made of"
-                " the roots of all phases; give them, or use jaxleas contacts GUIDE.npz --scene"
+                f"step {index} has no root: the sampling planner follows a guide path, made of"
+                " the roots of all steps; give them, or use jaxleas contacts GUIDE.npz --scene"
                 " SCENE.json --planner sampling"
             )
     feet = list(problem.initial.values())
     middle = np.mean([foot.position for foot in feet], axis=0)
-    roots = np.array([phase.root for phase in problem.phases])
+    roots = np.array([step.root for step in problem.steps])
     usual = load_robot(problem.robot).walking_height
     height = float(np.clip(roots[0, 2] - middle[2], usual - LOWER, usual + HIGHER))
     heading = math.atan2(*(sum(part(foot.yaw) for foot in feet) for part in (math.sin, math.cos)))
     places = np.concatenate([(middle + np.array([0.0, 0.0, height]))[None], roots])
-    yaws = np.unwrap([heading, *(phase.yaw for phase in problem.phases)])
+    yaws = np.unwrap([heading, *(step.yaw for step in problem.steps)])
     ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
     turns = np.abs(np.diff(yaws))
     counts = np.ceil(np.maximum(ways / STEP, turns / TURN) - 1e-6)

@@ -8,27 +8,42 @@ import numpy as np
 
 from jaxleas.contacts.planner import AskedGuides, Planner, mean_step
 from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import Scene
+from jaxleas.types import (
+    CAUSES,
+    UNDECIDED_CAUSES,
+    Cause,
+    GuidePath,
+    InputError,
+    PathProgress,
+    Verdict,
+)
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """A planner's result for one guide path.
+class PlannerAnswer:
+    """The answer of a planner of the user's own about one guide path.
 
     Attributes:
-        last_index: index of the last configuration of the guide path that it reached; -1: not even
-            the first. It succeeded if this is the path's last.
+        last_index: index of the last configuration of the guide path that was reached; -1 if not
+            even the first was. The planner succeeded if this is the path's last configuration.
         steps: number of contacts made along the path.
-        reason: reason why it stopped, a sentence; required where it did not succeed.
-        decided: False if it ran out of time: then the result is neither a success nor a failure.
+        reason: sentence that says why the planner stopped; required where it did not succeed.
+        decided: whether the planner came to an answer; False where it ran out of time: then the
+            path is neither a success nor a failure.
+        cause: kind of reason, by which failures are counted; "other" where a planner that stopped
+            states none, "time_limit" where it is undecided.
     """
 
     last_index: int
     steps: int = 0
     reason: str = ""
     decided: bool = True
+    cause: Cause | None = None
+
+
+Outcome = PlannerAnswer
+"""The former name of `PlannerAnswer`."""
 
 
 class OwnPlanner(PlannerSettings):
@@ -39,7 +54,7 @@ class OwnPlanner(PlannerSettings):
     name.
     """
 
-    def judge(self, scene: Scene, path: GuidePath) -> Outcome:
+    def judge(self, scene: Scene, path: GuidePath) -> PlannerAnswer:
         """Plan contacts along a guide path.
 
         Args:
@@ -73,47 +88,49 @@ def judge_by_own(scene: Scene, path: GuidePath, planner: OwnPlanner, number: int
         InputError: the answer contradicts itself or the path.
     """
     begun = time.perf_counter()
-    outcome = planner.judge(scene, path)
+    answer = planner.judge(scene, path)
     seconds = time.perf_counter() - begun
     name = f"{type(planner).__module__}:{type(planner).__name__}"
-    if wrong := _contradiction(outcome, len(path)):
+    if wrong := _contradiction(answer, len(path)):
         raise InputError(f"{name} on guide path {number}: {wrong}")
     kept = np.arange(0, len(path), planner.keep_every)
-    last = int(outcome.last_index)
-    return Verdict(
+    last, steps = int(answer.last_index), int(answer.steps)
+    progress = PathProgress(
         path=number,
-        decided=bool(outcome.decided),
-        success=bool(outcome.decided) and last == len(path) - 1,
-        last_index=last,
         length=len(path),
+        last_index=last,
         reached=float(np.mean(kept <= last)),
-        steps=int(outcome.steps),
-        mean_step=mean_step(path, last, int(outcome.steps)),
-        repositions=None,
-        least_robustness=None,
-        mean_robustness=None,
-        undecided=None,
-        combinations=None,
-        reason=outcome.reason,
-        seconds=seconds,
+        steps=steps,
+        mean_step=mean_step(path, last, steps),
     )
+    if not answer.reason:
+        return Verdict.succeeded(progress, seconds)
+    cause = answer.cause or ("other" if answer.decided else "time_limit")
+    return Verdict.stopped(progress, cause, answer.reason, seconds)
 
 
-def _contradiction(outcome: Any, length: int) -> str:
-    if not isinstance(outcome, Outcome):
-        return f"judge returned {type(outcome).__name__}, not jaxleas.labels.Outcome"
+def _contradiction(answer: Any, length: int) -> str:
+    if not isinstance(answer, PlannerAnswer):
+        return f"judge returned {type(answer).__name__}, not jaxleas.labels.PlannerAnswer"
     for field in ("last_index", "steps"):
-        value = getattr(outcome, field)
+        value = getattr(answer, field)
         if isinstance(value, bool) or not isinstance(value, int | np.integer):
             return f"{field} is {value!r}, not a whole number"
-    if not -1 <= outcome.last_index < length:
-        return f"last_index is {outcome.last_index}, but it should be -1 to {length - 1}"
-    if outcome.steps < 0:
-        return f"steps is {outcome.steps}, but it should be 0 or more"
-    whole = outcome.decided and outcome.last_index == length - 1
-    if whole == bool(outcome.reason):
+    if not -1 <= answer.last_index < length:
+        return f"last_index is {answer.last_index}, but it should be -1 to {length - 1}"
+    if answer.steps < 0:
+        return f"steps is {answer.steps}, but it should be 0 or more"
+    if answer.cause is not None and answer.cause not in CAUSES:
+        return f"cause is {answer.cause!r}, but it should be one of {', '.join(CAUSES)}"
+    whole = answer.decided and answer.last_index == length - 1
+    if whole == bool(answer.reason):
         return (
-            f"the reason is {outcome.reason!r}, but a path that was followed to its end has none,"
+            f"the reason is {answer.reason!r}, but a path that was followed to its end has none,"
             " and any other has one"
+        )
+    if answer.cause is not None and (whole or answer.decided == (answer.cause in UNDECIDED_CAUSES)):
+        return (
+            f"the cause is {answer.cause!r}, but a path that was followed to its end has none, and"
+            f" {' and '.join(UNDECIDED_CAUSES)} are those of an undecided one"
         )
     return ""

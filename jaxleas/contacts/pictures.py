@@ -8,11 +8,10 @@ import numpy as np
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.steps import rotation
+from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.files import atomic_path
-from jaxleas.robots.effector import LIMB_OF_FOOT
-from jaxleas.types import GuidePath
-from jaxleas.types.errors import InputError
+from jaxleas.robots import LIMB_OF_FOOT
+from jaxleas.types import GuidePath, InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,8 +50,8 @@ def draw_plan(
         path: path of the picture (.png, .svg, .pdf).
         problem: the contact problem.
         plan: answer to the problem.
-        guide: guide path, which is drawn whole; the roots of the phases if None.
-        made: for a plan that failed, a plan for the phases before the first that cannot be made.
+        guide: guide path, which is drawn whole; the roots of the steps if None.
+        made: for a plan that failed, a plan for the steps before the first that cannot be made.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
@@ -64,7 +63,7 @@ def draw_plan(
     figure = Figure(figsize=(12, 7), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 1)
-    kept = [phase.root for phase in problem.phases if phase.root is not None]
+    kept = [step.root for step in problem.steps if step.root is not None]
     roots = np.array(kept).reshape(-1, 3) if guide is None else np.asarray(guide.position)
     for ax, (view, shown) in zip(axes, VIEWS.items(), strict=True):
         _draw_surfaces(ax, problem, plan, shown)
@@ -81,9 +80,9 @@ def draw_plan(
 
 
 def _title(problem: ContactProblem, plan: ContactPlan) -> str:
-    outcome = plan.status if plan.feasible else f"{plan.status}: {plan.reason}"
+    result = plan.status if plan.feasible else f"{plan.status}: {plan.reason}"
     how = "" if plan.postures is not None else f", model {problem.model}"
-    return f"{plan.planner}{how}, {len(problem)} phases: {outcome}"
+    return f"{plan.planner}{how}, {len(problem)} steps: {result}"
 
 
 def _draw_surfaces(
@@ -100,11 +99,11 @@ def _draw_surfaces(
 
 
 def failing_candidates(problem: ContactProblem, plan: ContactPlan) -> tuple[str, ...]:
-    """Return the candidates of the first phase that cannot be made; none if it is not known."""
+    """Return the candidates of the first step that cannot be made; none if it is not known."""
     last = plan.last_feasible_phase
     if plan.feasible or last is None or last + 1 >= len(problem):
         return ()
-    return problem.phases[last + 1].candidates
+    return problem.steps[last + 1].candidates
 
 
 def _draw_guide(ax: "Axes", roots: np.ndarray, shown: tuple[int, int]) -> None:
@@ -126,8 +125,8 @@ def _draw_feet(
 ) -> None:
     feet = [(foot, pose.position, pose.yaw) for foot, pose in problem.initial.items()]
     if plan.footholds is not None and len(plan.footholds):
-        for phase, point in zip(problem.phases, plan.footholds, strict=False):
-            feet.append((phase.foot, point, phase.yaw))
+        for step, point in zip(problem.steps, plan.footholds, strict=False):
+            feet.append((step.foot, point, step.yaw))
     places = [each.com for each in plan.postures or ()] if plan.com is None else plan.com
     if len(places):
         com = np.reshape(places, (-1, 3))[:, list(shown)]
@@ -135,7 +134,7 @@ def _draw_feet(
     colours = dict(zip(problem.effectors, cycle(COLOURS), strict=False))
     labelled = set()
     for foot, point, yaw in feet:
-        corners = point + sole(problem.foot_half_size) @ rotation(yaw).T
+        corners = point + sole(problem.half_sizes[foot]) @ rotation(yaw).T
         label = None if foot in labelled else FULL_NAMES.get(foot, foot)
         colour = colours[foot]
         labelled.add(foot)
@@ -168,7 +167,7 @@ def _frame(
     if plan.footholds is not None:
         points += list(plan.footholds)
     if not plan.feasible and plan.postures is None:
-        names = {name for phase in problem.phases for name in phase.candidates}
+        names = {name for step in problem.steps for name in step.candidates}
         points += [corner for name in names for corner in problem.surfaces[name].vertices]
     here = np.array(points)[:, list(shown)]
     low, high = here.min(axis=0) - AROUND, here.max(axis=0) + AROUND

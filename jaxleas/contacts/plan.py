@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
 from jaxleas.files import read_json, require_version, write_json
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Status = Literal["feasible", "infeasible", "time_limit", "not_found"]
 VERSION = 1
@@ -18,26 +18,29 @@ STATUSES: tuple[Status, ...] = ("feasible", "infeasible", "time_limit", "not_fou
 
 @dataclass(frozen=True, eq=False)
 class ContactPlan:
-    """A planner's answer.
+    """A planner's answer to one contact problem or guide path.
 
     Attributes:
-        planner: "mip", "sl1m" or "sampling".
+        planner: name of the planner.
         feasible: whether a plan was found.
         status: "feasible"; "infeasible" (proved); "time_limit" (not decided in time); "not_found"
             (an incomplete planner gave up; proves nothing).
-        reason: why there is no plan, a sentence; empty when there is one.
-        surfaces: name of the surface of each planned phase.
-        footholds: foothold of each phase, in the world [m].
-        com: two positions of the centre of mass per phase [m]; None where the planner has none.
-        last_feasible_phase: last phase that can be made (the last of all when feasible, -1
-            when none can); None when not requested.
-        max_violation: largest violation by the certificate [m]; None without a plan.
+        reason: sentence that says why there is no plan; empty when there is one.
+        surfaces: name of the surface of each planned step.
+        footholds: foothold of each step, in the world [m].
+        com: two positions of the centre of mass per step [m]; None where the planner has none.
+        last_feasible_phase: index of the last step that can be made (that of the last step when
+            feasible, -1 when no step can be made); None when not requested.
+        max_violation: largest violation of a constraint, by the certificate [m]; None without a
+            plan.
         seconds: time spent planning [s].
         combinations: number of combinations of surfaces tried one after the other; None where a
             solver does that inside.
-        undecided: phases that the L1 relaxation left without a surface (SL1M only).
+        undecided: number of steps that the L1 relaxation left without a surface; None for other
+            planners than SL1M.
         robustness: robustness of each posture [N]; None for planners without postures.
-        postures: both feet at each kept configuration of the guide (sampling only).
+        postures: poses of all feet at each kept configuration of the guide; None for planners
+            without postures.
         gap: gap between a standing sole and its surface in these postures [m].
     """
 
@@ -106,7 +109,7 @@ def read_plan(path: str | Path) -> ContactPlan:
         )
     surfaces = content["surfaces"]
     if not isinstance(surfaces, list) or not all(isinstance(name, str) for name in surfaces):
-        raise InputError(f"{path}: surfaces must be a list of surface names, one a phase")
+        raise InputError(f"{path}: surfaces must be a list of surface names, one per step")
     com, postures = content.get("com"), content.get("postures")
     certificate = content.get("certificate") or {}
     if not isinstance(certificate, dict):
@@ -167,7 +170,7 @@ def _numbers(path: str | Path, key: str, value: Any, shape: tuple[int, ...]) -> 
         array = array.reshape(shape)
     except (TypeError, ValueError) as error:
         wanted = " x ".join(str(size) for size in shape)
-        raise InputError(f"{path}: {key} must hold {wanted} numbers, one row a phase") from error
+        raise InputError(f"{path}: {key} must hold {wanted} numbers, one row per step") from error
     if not np.isfinite(array).all():
         raise InputError(f"{path}: {key} holds a number that is not finite")
     return array

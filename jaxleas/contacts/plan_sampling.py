@@ -11,14 +11,13 @@ from jaxleas.contacts.planner import PlannerError, require_time_limit
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_certificate import certify_postures
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
-from jaxleas.contacts.sampling.explanation import explain_feet
-from jaxleas.contacts.sampling.planner import _Walk
-from jaxleas.contacts.sampling.world import World, make_world
+from jaxleas.contacts.sampling.case import make_case
+from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
 MOST_BEYOND = 1.0
@@ -35,7 +34,7 @@ def plan_sampling(
 ) -> ContactPlan:
     """Plan a robot's contacts along a guide path (T 4.1): acyclic, follows the guide exactly.
 
-    A phase of the plan is a contact that was made; `postures` has both feet at every kept
+    A phase of the plan is a contact that was made; `postures` has all feet at every kept
     configuration. Without success the plan holds what was reached: "not_found" proves nothing.
 
     Args:
@@ -44,7 +43,7 @@ def plan_sampling(
         settings: settings of the planner.
         time_limit: time limit, counted once the data base is made [s]; after it the plan's
             status is "time_limit".
-        robot: robot with two legs; Talos by default.
+        robot: robot with two legs or more; Talos by default.
 
     Raises:
         InputError: the guide or the scene cannot be used, or the guide leaves the scene.
@@ -52,21 +51,21 @@ def plan_sampling(
     """
     require_time_limit(time_limit)
     settings, robot = settings or SamplingSettings(), robot or load_robot("talos")
-    world = make_world(robot, [scene], settings)
+    case = make_case(robot, [scene], settings)
     feet = robot.foot_names
     begin = time.perf_counter()
-    walk = _TimedWalk(world, guide, begin + time_limit)
+    follower = GuideFollower(case, [guide], [0], begin + time_limit)
     _require_over(scene, guide)
-    walked = walk.plans()[0]
+    found = follower.plans()[0]
     seconds = time.perf_counter() - begin
-    plan = contact_plan(walked, feet, settings.contact_lift).but(seconds=seconds)
-    if walked.ending == "no_contact":
-        plan = plan.but(reason=f"{plan.reason}: {walk.why()}")
-    if walked.ending == "time_limit":
+    plan = contact_plan(found, feet, settings.contact_lift).but(seconds=seconds)
+    if found.ending == "no_contact":
+        plan = plan.but(reason=f"{plan.reason}: {follower.why_stopped()}")
+    if found.ending == "time_limit":
         late = f"not decided within the time limit of {time_limit:g} s"
-        where = f"stopped at configuration {walked.last_index} of the guide path"
+        where = f"stopped at configuration {found.last_index} of the guide path"
         plan = plan.but(status="time_limit", reason=f"{late}: {where}")
-    if not len(walked):
+    if not len(found):
         return plan
     certificate = certify_postures(plan, guide, scene, robot)
     if not certificate.certified:
@@ -74,33 +73,33 @@ def plan_sampling(
     return plan.but(max_violation=certificate.worst.metres)
 
 
-def contact_plan(walked: SamplingPlan, feet: Sequence[str], gap: float) -> ContactPlan:
+def contact_plan(found: SamplingPlan, feet: Sequence[str], gap: float) -> ContactPlan:
     """Return the sampling-based planner's answer as a contact plan, without a certificate.
 
     Args:
-        walked: answer of the planner.
+        found: answer of the planner.
         feet: names of the robot's feet, in its order.
         gap: between a standing sole and its surface, `SamplingSettings.contact_lift` [m].
     """
-    postures = tuple(_posture(walked, row, feet, gap) for row in range(len(walked)))
+    postures = tuple(_posture(found, row, feet, gap) for row in range(len(found)))
     made = [posture for posture in postures if posture.moved is not None]
     footholds = [each.feet[each.moved].position for each in made if each.moved]
     return ContactPlan(
         planner="sampling",
-        feasible=walked.success,
-        status="feasible" if walked.success else "not_found",
-        reason=walked.reason,
+        feasible=found.success,
+        status="feasible" if found.success else "not_found",
+        reason=found.reason,
         surfaces=tuple(each.surfaces[each.moved] for each in made if each.moved),
         footholds=np.array(footholds).reshape(-1, 3),
         last_feasible_phase=len(made) - 1,
-        seconds=walked.seconds,
-        robustness=tuple(walked.robustness.tolist()),
+        seconds=found.seconds,
+        robustness=tuple(found.robustness.tolist()),
         postures=postures,
         gap=gap,
     )
 
 
-def walked_problem(
+def problem_of_steps(
     plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
 ) -> ContactProblem:
     """Return the steps of a sampling plan as a contact problem, each with the surface it used.
@@ -122,8 +121,8 @@ def walked_problem(
             for name, vertices in scene.walkable.items()
         },
         initial=postures[0].feet if postures else {},
-        phases=tuple(
-            Phase(
+        steps=tuple(
+            Step(
                 each.moved,
                 each.feet[each.moved].yaw,
                 (each.surfaces[each.moved],),
@@ -133,7 +132,7 @@ def walked_problem(
             if each.moved
         ),
         polytopes=StepPolytopes({}, {}),
-        foot_half_size=robot.foot_half_size,
+        half_sizes={each.name: each.half_size for each in robot.effectors},
     )
 
 
@@ -151,35 +150,18 @@ def _require_over(scene: Scene, guide: GuidePath) -> None:
         )
 
 
-class _TimedWalk(_Walk):
-    """One guide path, walked until a deadline."""
-
-    def __init__(self, world: World, guide: GuidePath, deadline: float) -> None:
-        super().__init__(world, [guide], [0])
-        self.deadline = deadline
-
-    def why(self) -> str:
-        """Return why each foot makes no contact at the configuration after the last one."""
-        return explain_feet(self.world, self.guides, self.stances, int(self.at[0]) + 1)
-
-    def _go_on(self) -> tuple[np.ndarray, np.ndarray]:
-        if time.perf_counter() > self.deadline:
-            self._stop(np.flatnonzero(self.live), "time_limit", "its time is over")
-        return super()._go_on()
-
-
-def _posture(walked: SamplingPlan, row: int, feet: Sequence[str], gap: float) -> Posture:
+def _posture(found: SamplingPlan, row: int, feet: Sequence[str], gap: float) -> Posture:
     poses = {}
     for limb, foot in enumerate(feet):
-        rotation = walked.rotations[row, limb]
-        sole = walked.soles[row, limb] - gap * rotation[:, 2]
+        rotation = found.rotations[row, limb]
+        sole = found.soles[row, limb] - gap * rotation[:, 2]
         poses[foot] = FootPose(sole, math.atan2(rotation[1, 0], rotation[0, 0]))
-    moved = int(walked.moved[row])
+    moved = int(found.moved[row])
     return Posture(
-        configuration=int(walked.index[row]),
-        how=walked.how[row],
+        configuration=int(found.index[row]),
+        how=found.how[row],
         moved=None if moved < 0 else feet[moved],
         feet=poses,
-        surfaces=dict(zip(feet, walked.surfaces[row], strict=True)),
-        com=walked.com[row],
+        surfaces=dict(zip(feet, found.surfaces[row], strict=True)),
+        com=found.com[row],
     )

@@ -1,31 +1,38 @@
 """A planner's settings: selected from the given ones, and checked."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.contacts.planner import Planner
 from jaxleas.contacts.registry import PLANNERS, find_planner
 from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
-def require_settings(planner: Planner, settings: PlannerSettings | None) -> PlannerSettings:
-    """Return the settings given, if they are the planner's own, or the planner's defaults.
+def require_settings(
+    planner: Planner, settings: PlannerSettings | None, robot: str
+) -> PlannerSettings:
+    """Return the settings that a planner judges a robot's guide paths by, every one stated.
+
+    Args:
+        planner: planner that judges.
+        settings: settings to use; the planner's defaults if None.
+        robot: name of the robot.
 
     Raises:
-        InputError: the settings are another planner's.
+        InputError: the settings are another planner's, or there is no such robot.
     """
     kind = planner.settings
     if settings is None:
-        return kind()
+        return kind().for_robot(robot)
     if type(settings) is not kind:
         raise InputError(
             f"the {planner.name} planner takes {kind.__name__}, not {type(settings).__name__}"
         )
-    return settings
+    return settings.for_robot(robot)
 
 
 def settings_from(planner: Planner | str, **given: Any) -> Any:
@@ -40,6 +47,28 @@ def settings_from(planner: Planner | str, **given: Any) -> Any:
     """
     found = find_planner(planner) if isinstance(planner, str) else planner
     return _made(found.name, found.settings, given, lambda each: each.settings)
+
+
+def stored_settings(planner: Planner | str, stored: Mapping[str, Any]) -> Any:
+    """Return settings that a file of labels or of a surrogate has stored.
+
+    A file stores all settings, also those that nobody stated: a value that is the default counts as
+    not stated, so that it does not bind a robot which the default does not fit.
+
+    Args:
+        planner: planner, or name of a built-in one.
+        stored: settings by name.
+
+    Raises:
+        InputError: the planner has no such setting, or the value is out of range.
+    """
+    found = find_planner(planner) if isinstance(planner, str) else planner
+    default = found.settings().model_dump(mode="json")
+    missing = object()
+    return settings_from(
+        found,
+        **{name: each for name, each in stored.items() if default.get(name, missing) != each},
+    )
 
 
 def plan_settings_from(planner: Planner, **given: Any) -> Any:

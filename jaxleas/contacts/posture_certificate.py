@@ -13,11 +13,11 @@ import numpy as np
 from jaxleas.contacts.certificate import TOLERANCE, Violation
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.posture import Posture
-from jaxleas.contacts.posture_model import Stood, limb_of, stand, two_point_margin
-from jaxleas.dynamics.contact_points import ContactPoints
-from jaxleas.dynamics.exact_cone import exact_robustness
+from jaxleas.contacts.posture_balance import two_point_margin
+from jaxleas.contacts.posture_model import Stood, stand
+from jaxleas.dynamics import ContactPoints, exact_robustness
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
 _SAME_FORCE = 1e-6
@@ -64,8 +64,8 @@ def certify_postures(
     """Recompute every constraint on the postures of a sampling plan.
 
     Each foot lies on its surface; one foot moves at a time; each leg reaches its foothold within
-    its joint limits; the centre of mass is where the plan says; it can be over the standing foot
-    while the other one moves, in reach of both (T app. B); the posture is in equilibrium and has
+    its joint limits; the centre of mass is where the plan says; it can be above the standing feet
+    while the other one moves, in reach of all (T app. B); the posture is in equilibrium and has
     the robustness that the plan states, with exact friction cones: planners that linearise the
     cones from inside state less than the exact value, never more. Collisions are not judged again.
 
@@ -76,10 +76,10 @@ def certify_postures(
         robot: robot that the plan is for; Talos by default.
 
     Raises:
-        InputError: the plan does not belong to this guide and scene.
+        InputError: the plan does not belong to this guide, scene and robot.
     """
-    postures = _require_fitting(plan, guide, scene)
     robot = robot or load_robot("talos")
+    postures = _require_fitting(plan, guide, scene, robot)
     worst, least, error = Violation(-math.inf, 0, ""), math.inf, 0.0
     before: tuple[Posture, Stood] | None = None
     assert plan.robustness is not None
@@ -111,9 +111,8 @@ def _change(
             moved = max(float(np.abs(one.position - two.position).max()), abs(one.yaw - two.yaw))
             found.append((moved, f"{foot} standing still"))
     if now.moved is not None:
-        reaches = {foot: limb_of(robot, foot).com_reach for foot in now.feet}
         for which, text in ((stood_before, "leaves"), (stood, "lands")):
-            margin = two_point_margin(which, now.moved, reaches)
+            margin = two_point_margin(which, now.moved, robot)
             found.append((-margin, f"room for the centre of mass as {now.moved} {text}"))
     return found
 
@@ -136,7 +135,9 @@ def _robustness(stood: Stood, robot: Robot, enough: float) -> float:
     return exact_robustness(contacts, stood.com, mass=stood.mass, enough=enough)
 
 
-def _require_fitting(plan: ContactPlan, guide: GuidePath, scene: Scene) -> tuple[Posture, ...]:
+def _require_fitting(
+    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot
+) -> tuple[Posture, ...]:
     if not plan.postures or plan.robustness is None:
         raise InputError(f"this plan is '{plan.status}' and has no postures to check")
     if len(plan.robustness) != len(plan.postures):
@@ -155,6 +156,11 @@ def _require_fitting(plan: ContactPlan, guide: GuidePath, scene: Scene) -> tuple
             f" {len(guide) - 1}: perhaps it is for another guide"
         )
     for number, posture in enumerate(plan.postures):
+        if sorted(posture.feet) != sorted(robot.foot_names):
+            raise InputError(
+                f"posture {number} has {', '.join(posture.feet)} in contact; robot '{robot.name}'"
+                f" stands on {', '.join(robot.foot_names)}: perhaps the plan is another robot's"
+            )
         for foot, name in posture.surfaces.items():
             if name not in scene.surfaces:
                 raise InputError(f"posture {number}: {foot} stands on '{name}', not in this scene")

@@ -1,18 +1,16 @@
 """One posture computed the slow way: legs joint by joint, soles corner by corner."""
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.posture import Posture
-from jaxleas.geometry.polytopes import Polytope
-from jaxleas.robots import Robot
-from jaxleas.robots.limb_model import Body, LimbModel
-from jaxleas.terrain.scene import Scene
+from jaxleas.robots import Body, LimbModel, Robot
+from jaxleas.terrain import Scene
 from jaxleas.types import InputError
 
 
@@ -32,7 +30,7 @@ class Stood:
     found: list[tuple[float, str]]
     rotations: dict[str, Float[np.ndarray, "3 3"]]
     soles: dict[str, Float[np.ndarray, " 3"]]
-    corners: dict[str, Float[np.ndarray, "4 3"]]
+    corners: dict[str, Float[np.ndarray, "C 3"]]
     com: Float[np.ndarray, " 3"]
     mass: float
 
@@ -58,11 +56,11 @@ def stand(
     Raises:
         InputError: the robot's file does not describe its body or a limb's joints.
     """
-    turn, body = about("z", yaw), body_of(robot)
-    moment, mass = body.mass * (root + turn @ body.com), body.mass
+    turn, (mass, com) = about("z", yaw), resting_mass(robot, posture.feet)
+    moment = mass * (root + turn @ com)
     found, rotations, soles, corners = [], {}, {}, {}
     for foot in posture.feet:
-        model, square = limb_of(robot, foot), robot.effector(foot).half_size
+        model, arms = limb_of(robot, foot), robot.effector(foot).corners
         pose, polygon = posture.feet[foot], np.asarray(scene.surfaces[posture.surfaces[foot]])
         normal = normal_of(polygon)
         rotation = foot_rotation(normal, pose.yaw)
@@ -79,8 +77,7 @@ def stand(
         angles = _witness(model, turn.T @ (sole - root), turn.T @ rotation)
         frames, origins, reached, reached_turn = chain(model, angles)
         apart = [
-            root + turn @ (reached + reached_turn @ arm) - (sole + rotation @ arm)
-            for arm in _arms(square)
+            root + turn @ (reached + reached_turn @ arm) - (sole + rotation @ arm) for arm in arms
         ]
         found.append((float(np.linalg.norm(apart, axis=1).max()), f"reach of {foot}"))
         for frame, origin, weight, com in zip(
@@ -89,7 +86,7 @@ def stand(
             moment = moment + weight * (root + turn @ (origin + frame @ com))
             mass += float(weight)
         rotations[foot], soles[foot] = rotation, sole
-        corners[foot] = _over_surface(polygon, normal, sole, rotation, square)
+        corners[foot] = _over_surface(polygon, normal, sole, rotation, arms)
     return Stood(found, rotations, soles, corners, moment / mass, mass)
 
 
@@ -119,37 +116,31 @@ def body_of(robot: Robot) -> Body:
     return robot.body
 
 
-def two_point_margin(stood: Stood, moving: str, reaches: dict[str, Polytope]) -> float:
-    """Return the room of the centre of mass over the standing foot, in reach of both feet [m].
+def resting_mass(robot: Robot, standing: Collection[str]) -> tuple[float, np.ndarray]:
+    """Return mass [kg] and centre of mass [m] of all but the standing limbs, in the root frame.
+
+    Limbs that do not stand and have a model, such as arms, are in their reference posture.
 
     Args:
-        stood: posture before the foot leaves, or after it has landed.
-        moving: name of the other foot.
-        reaches: reach of the centre of mass from each foot, in its frame turned by its yaw alone.
+        robot: robot with a body.
+        standing: names of the effectors whose limbs are left out.
+
+    Raises:
+        InputError: the robot's file does not state the mass of its body.
     """
-    (standing,) = (foot for foot in reaches if foot != moving)
-    rows, bounds = [], []
-    for foot, reach in reaches.items():
-        rotation = stood.rotations[foot]
-        turn = about("z", math.atan2(rotation[1, 0], rotation[0, 0]))
-        normals = reach.normals @ turn.T
-        rows.append(normals)
-        bounds.append(reach.offsets + normals @ stood.soles[foot])
-    corners = stood.corners[standing]
-    for here, there in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        outward = np.array([there[1] - here[1], here[0] - there[0], 0.0])
-        length = float(np.linalg.norm(outward))
-        if length > 1e-9:
-            rows.append(outward[None] / length)
-            bounds.append(np.array([outward @ here / length]))
-    A = np.concatenate(rows)
-    answer = linprog(
-        [0.0, 0.0, 0.0, -1.0],
-        A_ub=np.column_stack([A, np.ones(len(A))]),
-        b_ub=np.concatenate(bounds),
-        bounds=[(None, None)] * 3 + [(None, 1.0)],
-    )
-    return float(answer.x[3]) if answer.status == 0 else -math.inf
+    body = body_of(robot)
+    mass, com = body.mass, body.com
+    for limb, effector in zip(robot.limbs, robot.effectors, strict=True):
+        if effector.name in standing or limb.model is None:
+            continue
+        frames, origins, _, _ = chain(limb.model, limb.model.reference)
+        for frame, origin, weight, place in zip(
+            frames, origins, limb.model.link_mass, limb.model.link_com, strict=True
+        ):
+            if weight > 0.0:
+                com = (mass * com + weight * (origin + frame @ place)) / (mass + weight)
+                mass += float(weight)
+    return mass, com
 
 
 def chain(
@@ -213,22 +204,16 @@ def _witness(model: LimbModel, position: np.ndarray, rotation: np.ndarray) -> np
     return np.clip(angles, model.chain.lower, model.chain.upper)
 
 
-def _arms(half_size: tuple[float, float]) -> list[np.ndarray]:
-    """Return the sole's corners from its middle, counter-clockwise."""
-    x, y = half_size
-    return [np.array([a, b, 0.0]) for a, b in ((x, y), (-x, y), (-x, -y), (x, -y))]
-
-
 def _over_surface(
     polygon: np.ndarray,
     normal: np.ndarray,
     sole: np.ndarray,
     rotation: np.ndarray,
-    half_size: tuple[float, float],
+    arms: np.ndarray,
 ) -> np.ndarray:
     """Return the sole's corners, each moved towards the middle until it is over the surface."""
     corners = []
-    for arm in _arms(half_size):
+    for arm in arms:
         reach, share = rotation @ arm, 1.0
         for here, there in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
             outward = np.cross(there - here, normal)

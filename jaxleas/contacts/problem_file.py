@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from jaxleas.contacts.polytopes import StepPolytopes, load_step_polytopes, read_polytopes
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 VERSION = 1
 NEEDED = ("robot", "model", "surfaces", "initial", "phases")
@@ -61,9 +61,9 @@ def parse_problem(where: str, content: Any) -> ContactProblem:
         model=model,
         surfaces=surfaces,
         initial=initial,
-        phases=_phases(where, content["phases"], surfaces, tuple(initial)),
+        steps=_phases(where, content["phases"], surfaces, tuple(initial)),
         polytopes=_polytopes(where, content, model, tuple(initial)),
-        foot_half_size=_foot_half_size(where, content),
+        half_sizes=_half_sizes(where, content, tuple(initial)),
         parts=_parts(where, content.get("parts"), surfaces),
     )
     require_feet_on_surfaces(problem, where)
@@ -87,18 +87,18 @@ def write_problem(path: str | Path, problem: ContactProblem) -> None:
             },
             "phases": [
                 {
-                    "foot": phase.foot,
-                    "yaw": phase.yaw,
-                    "candidates": list(phase.candidates),
-                    "root": None if phase.root is None else phase.root.tolist(),
+                    "foot": step.foot,
+                    "yaw": step.yaw,
+                    "candidates": list(step.candidates),
+                    "root": None if step.root is None else step.root.tolist(),
                 }
-                for phase in problem.phases
+                for step in problem.steps
             ],
             "polytopes": {
                 name: {"A": each.normals.tolist(), "b": each.offsets.tolist()}
                 for name, each in named.items()
             },
-            "foot_half_size": list(problem.foot_half_size),
+            "foot_half_size": _half_sizes_to_json(problem),
             "parts": dict(problem.parts),
         },
     )
@@ -173,7 +173,7 @@ def _effectors(where: str, named: list[str], robot: str) -> list[str]:
 
 def _phases(
     where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
-) -> tuple[Phase, ...]:
+) -> tuple[Step, ...]:
     if not isinstance(content, list) or not content:
         raise InputError(f"{where}: phases must be a list of at least one phase")
     if len(content) > MAX_PHASES:
@@ -186,7 +186,7 @@ def _phases(
 
 def _phase(
     where: str, content: Any, surfaces: dict[str, ContactSurface], effectors: tuple[str, ...]
-) -> Phase:
+) -> Step:
     if not isinstance(content, dict) or not {"foot", "yaw", "candidates"} <= content.keys():
         raise InputError(f"{where} must be an object with foot, yaw and candidates")
     refuse_misspelt_keys(where, content, OF_A_PHASE)
@@ -203,7 +203,7 @@ def _phase(
         if not isinstance(name, str) or name not in surfaces:
             raise InputError(f"{where}: candidate {name!r:.60} is no surface of this problem")
     root = content.get("root")
-    return Phase(
+    return Step(
         foot=content["foot"],
         yaw=_yaw(where, content["yaw"]),
         candidates=tuple(dict.fromkeys(names)),
@@ -230,15 +230,43 @@ def _polytopes(
     return read_polytopes(f"{where}: polytopes", given, model, effectors)
 
 
-def _foot_half_size(where: str, content: dict[str, Any]) -> tuple[float, float]:
+def _half_sizes(
+    where: str, content: dict[str, Any], effectors: tuple[str, ...]
+) -> dict[str, tuple[float, float]]:
+    """Return the half sizes of each effector: one pair is the value for all of them."""
     given = content.get("foot_half_size")
     if given is None:
-        return load_robot(content["robot"]).foot_half_size
+        robot = load_robot(content["robot"])
+        return {name: robot.effector(name).half_size for name in effectors}
+    if not isinstance(given, dict):
+        return dict.fromkeys(effectors, _half_size(f"{where}: foot_half_size", given))
+    if set(given) != set(effectors):
+        raise InputError(
+            f"{where}: foot_half_size is of {', '.join(given) or 'no effector'}: give two numbers"
+            f" [m] for all effectors, or for each of {', '.join(effectors)}"
+        )
+    return {
+        name: _half_size(f"{where}: foot_half_size of {name}", given[name]) for name in effectors
+    }
+
+
+def _half_size(where: str, given: Any) -> tuple[float, float]:
     if not isinstance(given, list) or len(given) != 2 or not all(_is_number(x) for x in given):
-        raise InputError(f"{where}: foot_half_size must be two numbers [m], not {given!r:.60}")
-    if not all(0.0 < x < 1.0 for x in given):
-        raise InputError(f"{where}: foot_half_size {given} is not between 0 and 1 m")
+        raise InputError(f"{where} must be two numbers [m], not {given!r:.60}")
+    is_point = given[0] == given[1] == 0.0
+    if not is_point and not all(0.0 < x < 1.0 for x in given):
+        raise InputError(f"{where} {given} is not between 0 and 1 m, nor 0, 0 of a point foot")
     return float(given[0]), float(given[1])
+
+
+def _half_sizes_to_json(problem: ContactProblem) -> list[float] | dict[str, list[float]]:
+    """Return one pair where all effectors have it, as in files before, else one pair for each.
+
+    One key holds both forms: an earlier version refuses the second one, but would skip a new key.
+    """
+    sizes = {name: list(problem.half_sizes[name]) for name in problem.effectors}
+    first = next(iter(sizes.values()))
+    return first if all(each == first for each in sizes.values()) else sizes
 
 
 def _parts(where: str, content: Any, surfaces: dict[str, ContactSurface]) -> dict[str, str]:

@@ -7,7 +7,16 @@ from jaxleas.contacts.planner import AskedGuide, AskedGuides, Grain, Planner, me
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
 from jaxleas.robots import load_robot
-from jaxleas.types import GuidePath, Verdict
+from jaxleas.types import Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
+
+CAUSE_OF_ENDING: dict[str, Cause] = {
+    "trunk": "collision",
+    "no_start": "no_start",
+    "no_contact": "no_contact",
+    "repositions": "repositions",
+    "time_limit": "time_limit",
+}
+"""The cause of a verdict, for each ending of a plan but "reached"."""
 
 
 class Sampling(Planner):
@@ -46,20 +55,20 @@ class Sampling(Planner):
 
 def _verdict(number: int, path: GuidePath, plan: SamplingPlan) -> Verdict:
     stood = len(plan) > 0
-    return Verdict(
+    progress = PathProgress(
         path=number,
-        decided=True,
-        success=plan.success,
-        last_index=plan.last_index,
         length=len(path),
+        last_index=plan.last_index,
         reached=plan.reached,
         steps=plan.steps,
         mean_step=mean_step(path, plan.last_index, plan.steps),
+    )
+    measures = PlannerMeasures(
         repositions=plan.repositions,
         least_robustness=float(plan.robustness.min()) if stood else None,
         mean_robustness=float(plan.robustness.mean()) if stood else None,
-        undecided=None,
-        combinations=None,
-        reason=plan.reason,
-        seconds=plan.seconds,
     )
+    if plan.ending == "reached":
+        return Verdict.succeeded(progress, plan.seconds, measures)
+    cause = CAUSE_OF_ENDING[plan.ending]
+    return Verdict.stopped(progress, cause, plan.reason, plan.seconds, measures)

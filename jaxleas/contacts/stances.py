@@ -36,7 +36,7 @@ def contact_pose(
 
 
 def stances_of(problem: ContactProblem, plan: ContactPlan) -> tuple[Stance, ...]:
-    """Return the stance before the first phase of a plan and after each phase.
+    """Return the stance before the first step of a plan and after each step.
 
     Args:
         problem: contact problem.
@@ -48,9 +48,9 @@ def stances_of(problem: ContactProblem, plan: ContactPlan) -> tuple[Stance, ...]
     stance = Stance.of(_initial(problem))
     stances = [stance]
     footholds = () if plan.footholds is None else plan.footholds
-    for phase, name, point in zip(problem.phases, plan.surfaces, footholds, strict=False):
+    for step, name, point in zip(problem.steps, plan.surfaces, footholds, strict=False):
         normal = problem.surfaces[name].normal
-        stance = stance.making(Contact(phase.foot, name, contact_pose(point, phase.yaw, normal)))
+        stance = stance.making(Contact(step.foot, name, contact_pose(point, step.yaw, normal)))
         stances.append(stance)
     return tuple(stances)
 

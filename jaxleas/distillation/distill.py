@@ -26,8 +26,9 @@ from jaxleas.distillation.rounds import (
     known_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
-from jaxleas.evaluation.titles import refined_name
-from jaxleas.training.policy import read_policy
+from jaxleas.evaluation import refined_name
+from jaxleas.guide import LEAS
+from jaxleas.training import read_policy
 
 _MODES = {"surrogate": AgainstSurrogate, "faithful": AgainstPlanner}
 
@@ -77,7 +78,7 @@ def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> Rou
     cells = judge_round(
         place.folder.round(number).judged,
         practised.policy,
-        refined_name(planner) if number else "leas_p1",
+        refined_name(planner) if number else LEAS.key,
         Examiner(planner, place.judge),
         place.config.judge,
         lambda words: say(f"round {number}: the exact planner judges {words}", passing=True),

@@ -6,22 +6,24 @@ from pathlib import Path
 
 import jax
 
-from jaxleas.conditions import Foresight
-from jaxleas.conditions.named import harmless
-from jaxleas.configuration.loading import to_yaml
+from jaxleas.conditions import Foresight, harmless
+from jaxleas.configuration import to_yaml
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.opening import load_steering_run
-from jaxleas.envs.steering.task import Steering
+from jaxleas.envs.steering import Steering
 from jaxleas.files import write_json
-from jaxleas.runs.checkpoints import Checkpoints
-from jaxleas.runs.folder import RunFolder
-from jaxleas.training.devices import Devices
-from jaxleas.training.loop import train
-from jaxleas.training.networks import make_networks
-from jaxleas.training.normaliser import initial_normaliser
-from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.train_state import Learned
+from jaxleas.runs import Checkpoints, RunFolder
+from jaxleas.training import (
+    Devices,
+    Learned,
+    Trainer,
+    initial_normaliser,
+    make_networks,
+    policy_of,
+    train_with,
+    write_policy,
+)
 
 _LOG = logging.getLogger("jaxleas")
 
@@ -80,7 +82,7 @@ def practise(
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
         task = Steering(config.env, config.terrain, foresight=foresight)
-        train(config, run, task=task, devices=devices, learned=learned)
+        train_with(Trainer(config, task, devices), run, learned)
     conclude(folder, config, time.perf_counter() - begun)
 
 

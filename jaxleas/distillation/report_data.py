@@ -1,6 +1,6 @@
 """The content of a distilled run's folder, read from files alone, for its report."""
 
-from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,17 +8,30 @@ from typing import Any
 from jaxleas.distillation.folder import DistillationFolder, read_begun_with
 from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds
-from jaxleas.evaluation.figure_file import Figures, read_figures
-from jaxleas.evaluation.result_file import Evaluation, read_evaluation
-from jaxleas.evaluation.titles import refined_name
+from jaxleas.evaluation import Evaluation, Figures, read_evaluation, read_figures, refined_name
 from jaxleas.files import is_file
-from jaxleas.labels.shards import read_verdicts
-from jaxleas.reports.published import printed_planners
-from jaxleas.runs.metrics import read_metrics
-from jaxleas.types.errors import InputError
+from jaxleas.labels import read_verdicts
+from jaxleas.reports import printed_planners
+from jaxleas.runs import read_metrics
+from jaxleas.types import CAUSES, Cause, InputError, Verdict
 
 FIGURES = "figures.json"
-MOST_REASONS = 3
+MOST_CAUSES = 3
+
+
+@dataclass(frozen=True)
+class FailureCount:
+    """Failures with one cause.
+
+    Attributes:
+        count: number of the failures.
+        cause: cause of the failures, described.
+        example: reason of the first of them, a sentence.
+    """
+
+    count: int
+    cause: str
+    example: str
 
 
 @dataclass(frozen=True)
@@ -31,7 +44,7 @@ class LabelCount:
         passed: number of those that the planner succeeded on.
         undecided: number of those without a verdict in time.
         seconds: mean planning time per guide path [s].
-        reasons: most frequent reasons of failure, with their counts.
+        failures: most frequent causes of failure, the most frequent one first.
     """
 
     round: int
@@ -39,7 +52,7 @@ class LabelCount:
     passed: int
     undecided: int
     seconds: float
-    reasons: tuple[tuple[str, int], ...]
+    failures: tuple[FailureCount, ...]
 
 
 @dataclass(frozen=True)
@@ -151,18 +164,27 @@ def count_labels(number: int, folder: Path) -> LabelCount:
         InputError: one of the files is not a verdict file.
     """
     verdicts = [verdict for _, verdict in read_verdicts(folder)]
-    reasons = Counter(_kind(each.reason) for each in verdicts if each.decided and not each.success)
+    failures = [each for each in verdicts if each.decided and not each.success]
     return LabelCount(
         round=number,
         guides=len(verdicts),
         passed=sum(each.success for each in verdicts),
         undecided=sum(not each.decided for each in verdicts),
         seconds=sum(each.seconds for each in verdicts) / max(len(verdicts), 1),
-        reasons=tuple(reasons.most_common(MOST_REASONS)),
+        failures=most_frequent(failures),
     )
 
 
-def _kind(reason: str) -> str:
-    """Return a reason without its numbers, so that equal ones count together."""
-    words = ("#" if any(map(str.isdigit, word)) else word for word in reason.split())
-    return " ".join(words)
+def most_frequent(failures: Sequence[Verdict]) -> tuple[FailureCount, ...]:
+    """Count failures by their cause, the most frequent causes first.
+
+    Failures without a cause, of files from before causes were recorded, count as "other".
+    """
+    grouped: dict[Cause, list[Verdict]] = {}
+    for each in failures:
+        grouped.setdefault(each.cause or "other", []).append(each)
+    order = sorted(grouped, key=lambda cause: -len(grouped[cause]))[:MOST_CAUSES]
+    return tuple(
+        FailureCount(len(grouped[cause]), CAUSES[cause], grouped[cause][0].reason)
+        for cause in order
+    )

@@ -10,7 +10,7 @@ from typing import Any
 from jaxleas.envs.array_checks import kind_of, require_array, require_rows, require_same
 from jaxleas.envs.environment import Examination, Starts, StepResult
 from jaxleas.envs.signature import Signature
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 LOGGED = ("reward", "failures_per_1000_steps", "goals_per_1000_steps", "valid_starts", "episodes")
 """Measures that the training logs of every task as `walk/NAME`."""

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 KINDS = {
     "numbers": (jnp.floating, jnp.integer),

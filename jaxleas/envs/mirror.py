@@ -8,7 +8,8 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
+from jaxleas.xla import take_inside
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ class Mirror:
         if self.order == tuple(range(len(self.order))):
             return vector
         order = jnp.asarray(self.order, jnp.int32)
-        return vector.at[..., order].get(mode="promise_in_bounds")
+        return take_inside(vector, (..., order))
 
 
 def require_mirror(mirror: Mirror | None, size: int, what: str) -> None:

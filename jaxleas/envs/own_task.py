@@ -3,9 +3,9 @@
 import inspect
 from typing import Any
 
-from jaxleas.configuration.values import require_field
+from jaxleas.configuration import require_field
 from jaxleas.envs.environment import Task, TaskConfig, WorldsConfig
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def require_task(name: str, item: Any) -> None:
@@ -20,7 +20,7 @@ def require_task(name: str, item: Any) -> None:
     """
     if not (isinstance(item, type) and issubclass(item, Task)):
         raise InputError(
-            f"{name} is no task: derive a class from jaxleas.envs.environment.Task, as"
+            f"{name} is no task: derive a class from jaxleas.envs.Task, as"
             " docs/your_own_task.md shows"
         )
     _require_complete(name, item)
@@ -29,7 +29,7 @@ def require_task(name: str, item: Any) -> None:
         if not (isinstance(found, type) and issubclass(found, base)):
             raise InputError(
                 f"the task {name} has the {section} {found!r}; give a class derived from"
-                f" jaxleas.envs.environment.{base.__name__}"
+                f" jaxleas.envs.{base.__name__}"
             )
         _require_complete(f"{name}.{section}", found)
     _require_names(f"the task {name}: groups", item.groups)

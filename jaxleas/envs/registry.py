@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jaxleas.configuration.registry import Registry
+from jaxleas.configuration import Registry
 from jaxleas.envs.environment import Task
 from jaxleas.envs.own_task import require_task
 

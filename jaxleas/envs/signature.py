@@ -19,8 +19,8 @@ from jaxtyping import Float, Key
 from jaxleas.envs.array_checks import kind_of
 from jaxleas.envs.heads.head import Head
 from jaxleas.envs.mirror import Mirror, require_mirror
-from jaxleas.types.errors import InputError
-from jaxleas.xla.split import split
+from jaxleas.types import InputError
+from jaxleas.xla import split
 
 Numbers = float | tuple[float, ...]
 

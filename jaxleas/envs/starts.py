@@ -9,6 +9,7 @@ from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.envs.environment import Starts, select
+from jaxleas.xla import take_inside
 
 
 @struct.dataclass
@@ -94,5 +95,5 @@ def restart_where(
     """
     # The other robots all read candidate 0, which stays in the cache.
     pick = jnp.where(done, pick, 0)
-    fresh = jax.tree.map(lambda leaf: leaf.at[pick].get(mode="promise_in_bounds"), pool.state)
+    fresh = jax.tree.map(lambda leaf: take_inside(leaf, pick), pool.state)
     return select(done, fresh, state)

@@ -1,22 +1,27 @@
-"""The methods of a side-by-side comparison: baselines, the policy judged, further policies."""
+"""The methods of a side-by-side comparison: built-in ones, further policies, and one's own."""
 
 import difflib
 import hashlib
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from jaxleas.configuration import is_own
 from jaxleas.evaluation.exact import Walker, walker
-from jaxleas.evaluation.examination import POLICY, Candidate
+from jaxleas.evaluation.examination import Candidate
 from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.roadmap_walker import roadmap_walker
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.registry import BASELINES
-from jaxleas.guide.roadmaps.search import import_ompl
-from jaxleas.types.errors import InputError
-
-ROADMAP = "rb_kino_rrt"
+from jaxleas.guide import (
+    METHODS,
+    compared,
+    find_method,
+    import_ompl,
+    leas,
+    load_policy,
+    policy_file,
+)
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True)
@@ -25,7 +30,8 @@ class Contenders:
 
     Attributes:
         walkers: walkers by the name that results carry, baselines first.
-        fingerprints: SHA-256 of the further policies' files, by name.
+        fingerprints: SHA-256 of the files of further policies and of methods of one's own, by
+            name.
     """
 
     walkers: Mapping[str, Walker]
@@ -42,33 +48,59 @@ def make_contenders(
     Args:
         candidate: policy to judge, with its baselines.
         policies: paths of further policies, by the name that results will carry.
-        wanted: names of the methods that walk; all by default.
+        wanted: names of the methods that walk, each as on a command line or as in result files,
+            or MODULE:CLASS of one's own; by default the methods usually compared, and the further
+            policies.
 
     Raises:
         InputError: a name is unknown or taken, or a policy cannot be used.
     """
     policies = {} if policies is None else policies
-    names = [*BASELINES, ROADMAP, POLICY, *policies]
+    usual = compared()
     for name in policies:
-        if names.count(name) > 1:
+        if name in usual:
             raise InputError(f"the method {name!r} is there already; give the policy another name")
-    for name in wanted or ():
-        if name not in names:
-            close = difflib.get_close_matches(name, names, n=1)
-            hint = f"did you mean {close[0]!r}? There are" if close else "there are"
-            raise InputError(f"no method is called {name!r}; {hint} {', '.join(names)}")
-    chosen = [name for name in names if wanted is None or name in wanted]
-    walkers, fingerprints = {}, {}
-    for name in chosen:
+    names = [*usual, *policies]
+    chosen = names if wanted is None else [_known(name, policies) for name in wanted]
+    walkers: dict[str, Walker] = {}
+    fingerprints: dict[str, str] = {}
+    for name in sorted(dict.fromkeys(chosen), key=lambda each: (*names, each).index(each)):
         if name in policies:
             walkers[name] = _policy_walker(policies[name], candidate.refusal)
             fingerprints[name] = fingerprint_of(policies[name])
-        elif name == ROADMAP:
-            import_ompl()
-            walkers[name] = roadmap_walker(candidate.env, candidate.methods["rb_kino"], "kino")
-        else:
+        elif is_own(name):
+            walkers[name] = _own_walker(candidate, name)
+            fingerprints |= _fingerprint_of_code(name)
+        elif name in candidate.methods:
             walkers[name] = walker(candidate.env, candidate.methods[name])
+        else:
+            import_ompl()
+            method = next(each for each in METHODS if each.roadmap_key == name)
+            walkers[name] = roadmap_walker(
+                candidate.env, candidate.methods[method.key], method.edges
+            )
     return Contenders(walkers, fingerprints)
+
+
+def _known(name: str, policies: Mapping[str, Path]) -> str:
+    """Return the name in result files of a method that a person asked for.
+
+    Raises:
+        InputError: there is no such method.
+    """
+    if name in policies or is_own(name):
+        return name
+    keys = {each.name: each.key for each in METHODS} | {
+        key: key for each in METHODS for key in (each.key, each.roadmap_key)
+    }
+    if name in keys:
+        return keys[name]
+    names = [*compared(), *policies]
+    close = difflib.get_close_matches(name, names, n=1)
+    hint = f"did you mean {close[0]!r}? There are" if close else "there are"
+    raise InputError(
+        f"no method is called {name!r}; {hint} {', '.join(names)}, or MODULE:CLASS of your own"
+    )
 
 
 def parse_policies(given: Sequence[str]) -> dict[str, Path]:
@@ -92,6 +124,18 @@ def fingerprint_of(path: Path) -> str:
     """Return the SHA-256 of a policy's file."""
     file = policy_file(path) if path.is_dir() else path
     return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _own_walker(candidate: Candidate, name: str) -> Walker:
+    method = find_method(name)
+    policy = load_policy(candidate.path) if method.needs_policy else None
+    return walker(candidate.env, method.make(candidate.env, policy))
+
+
+def _fingerprint_of_code(name: str) -> dict[str, str]:
+    """Return the SHA-256 of the module of one's own method, so that changed code walks again."""
+    file = getattr(sys.modules[name.partition(":")[0]], "__file__", None)
+    return {} if file is None else {name: hashlib.sha256(Path(file).read_bytes()).hexdigest()}
 
 
 def _policy_walker(path: Path, refusal: Refusal | None) -> Walker:

@@ -8,20 +8,19 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.judge import Walk, rounded, summarise, walk
+from jaxleas.contacts import PlannerSettings
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation.judge import CellRollOut, roll_out_cell, rounded, summarise
 from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy
-from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.labels import Judge, PlannerSettings, Verdict
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.guide import SteeringMethod, leas, load_policy
+from jaxleas.labels import Judge
+from jaxleas.terrain import Scene
+from jaxleas.types import GuidePath, Verdict
 
-Walker = Callable[[Grounds, Starts, int], Walk]
+Walker = Callable[[Grounds, Starts, int], CellRollOut]
 """Walks the starts of a cell for at most the given number of steps, with or without a roadmap."""
 ResultKey = tuple[str, float, float, float, str, str | None]
 """Name, yaw, spread and speed of the cell, method, planner."""
@@ -61,12 +60,12 @@ class Judged:
     """The roll-outs of a cell, and an exact planner's verdicts on them.
 
     Attributes:
-        walk: roll-outs of the cell.
+        roll_outs: roll-outs of the cell.
         verdicts: one verdict per roll-out; None where the goal was not reached: there is no guide
             path to plan along.
     """
 
-    walk: Walk
+    roll_outs: CellRollOut
     verdicts: tuple[Verdict | None, ...]
 
     @property
@@ -77,12 +76,12 @@ class Judged:
 
 def walker(env: SteeringEnv, method: SteeringMethod) -> Walker:
     """Return a steering method that observes through its own environment as a walker."""
-    return lambda grounds, starts, steps: walk(env, grounds, method, starts, steps)
+    return lambda grounds, starts, steps: roll_out_cell(env, grounds, method, starts, steps)
 
 
 def ask(
     cell: Cell,
-    walked: Walk,
+    walked: CellRollOut,
     planner: Planner,
     time_step: float,
     on_done: Callable[[int], None] = lambda count: None,
@@ -122,7 +121,7 @@ def summarise_plans(
         judged: roll-outs and the planner's verdicts.
         time_step: time between two configurations [s].
     """
-    result = summarise(cell, method, judged.walk, time_step)
+    result = summarise(cell, method, judged.roll_outs, time_step)
     good = [each for each in judged.verdicts if each is not None and each.success]
     late = [each for each in judged.verdicts if each is not None and not each.decided]
     robustness = [each.mean_robustness for each in good if each.mean_robustness is not None]

@@ -6,20 +6,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.refusal import Refusal, env_of
+from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
-from jaxleas.evaluation.stage import Stage
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.registry import BASELINES
-from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.types.errors import InputError
+from jaxleas.guide import BASELINES, LEAS, SteeringMethod, load_policy, policy_file
+from jaxleas.types import InputError
 
-POLICY = "leas_p1"
+POLICY = LEAS.key
 
 
 @dataclass(frozen=True)
@@ -53,11 +50,7 @@ def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidat
     """
     policy = load_policy(path)
     env = env_of(policy.config, refusal)
-    limits, speed = env.config.limits, env.config.desired_speed
-    methods = {
-        POLICY: leas(env, policy),
-        **{name: each.make(limits, speed) for name, each in BASELINES.items()},
-    }
+    methods = {each.key: each.make(env, policy) for each in (LEAS, *BASELINES.values())}
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
     return Candidate(Path(path), fingerprint, env, methods, refusal)
@@ -106,7 +99,7 @@ def evaluation_file(run: Path, suite: str) -> Path:
 def run_evaluations(
     candidate: Candidate,
     run: Path,
-    stage: Stage,
+    basis: ReportBasis,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Evaluation]:
     """Return a run's evaluations on all suites: those it holds, and the others, made and kept now.
@@ -116,7 +109,7 @@ def run_evaluations(
     Args:
         candidate: policy of the run.
         run: folder of the run.
-        stage: suites and terrain, shared with the report's pictures.
+        basis: suites and terrain, shared with the report's pictures.
         progress: called with the cell that is being walked.
     """
     evaluations = []
@@ -124,8 +117,8 @@ def run_evaluations(
         path = evaluation_file(run, name)
         evaluation = kept_evaluation(path, candidate)
         if evaluation is None:
-            suite = stage.suites.get(name)
-            grounds = None if suite is None else stage.grounds
+            suite = basis.suites.get(name)
+            grounds = None if suite is None else basis.grounds
             evaluation = examine(
                 candidate, suite or make_suite(name), progress=progress, grounds=grounds
             )

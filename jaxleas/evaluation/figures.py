@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.contacts import PlannerSettings
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Judged, Walker, ask
 from jaxleas.evaluation.figure_file import (
     Course,
@@ -16,12 +17,13 @@ from jaxleas.evaluation.figure_file import (
     write_figures,
 )
 from jaxleas.evaluation.height_band import height_band
-from jaxleas.evaluation.judge import Walk, rounded
+from jaxleas.evaluation.judge import CellRollOut, rounded
 from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.labels import Judge, PlannerSettings, Workers
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.labels import Judge
+from jaxleas.terrain import HeightMap
+from jaxleas.workers import Workers
 
 BASIC = ("stairs_up", "stairs_down", "rubble")
 COURSE = "long_course"
@@ -112,7 +114,7 @@ def measure_figures(
 
 def step_row(cell: Cell, method: str, keep_every: int, judged: Judged) -> StepRow:
     """Count and measure the guide paths of one method, for one N."""
-    walked = judged.walk
+    walked = judged.roll_outs
     paths = [walked.path(int(row)) for row in np.flatnonzero(walked.reached)]
     steps = [step_lengths(path, keep_every) for path in paths]
     good = [each for each in judged.verdicts if each is not None and each.success]
@@ -148,7 +150,7 @@ def step_lengths(path: np.ndarray, keep_every: int) -> np.ndarray:
 
 
 def _with_heights(
-    figures: Figures, grounds: Grounds, cell: Cell, method: str, walked: Walk
+    figures: Figures, grounds: Grounds, cell: Cell, method: str, walked: CellRollOut
 ) -> Figures:
     """Return figures with the root heights over the first scene's stairs (fig. 4.17)."""
     scene = walked.starts.scene == 0
@@ -176,7 +178,7 @@ def _with_course(
     figures: Figures, grounds: Grounds, cell: Cell, method: str, judged: Judged, keep_every: int
 ) -> Figures:
     """Return figures with one guide path along the long course (fig. 5.8)."""
-    walked = judged.walk
+    walked = judged.roll_outs
     scene = walked.starts.scene == 0
     best = next(
         (flag for flag in (judged.planned & scene, walked.reached & scene) if flag.any()), scene

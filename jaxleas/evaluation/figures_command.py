@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import DEFAULT_PLANNER, PlannerName, find_planner
+from jaxleas.contacts import DEFAULT_PLANNER, PlannerName, find_planner, settings_from
 from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
 from jaxleas.evaluation.examination import POLICY, load_candidate
 from jaxleas.evaluation.figure_file import FigureFile, Figures, read_figures, write_figures
@@ -14,10 +13,11 @@ from jaxleas.evaluation.figures import KEEP_EVERY, Questions, figure_cells, meas
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.labels.judging import planner_workers
-from jaxleas.types.errors import InputError
+from jaxleas.guide import KINO, ResultName
+from jaxleas.labels import planner_workers, settings_of
+from jaxleas.types import InputError
 
-METHODS = ("rb_kino", POLICY)
+METHODS = (KINO.key, POLICY)
 
 
 def figures(
@@ -25,8 +25,9 @@ def figures(
     *,
     out: Path,
     policies: Sequence[str] | None = None,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[ResultName] | None = None,
     planner: PlannerName = DEFAULT_PLANNER,
+    parameters: Sequence[str] | None = None,
     keep_every: Sequence[int] = KEEP_EVERY,
     starts: int = 30,
     course_starts: int = 10,
@@ -43,9 +44,10 @@ def figures(
         run: a run folder, a policy.npz or an .onnx file: LEAS-P1.
         out: path of the figure file, .json.
         policies: further policies, each as name=path.
-        methods: methods from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the further policies; by
-            default rb_kino, leas_p1 and the further ones.
+        methods: methods to measure, the further policies among them; by default rb_kino, leas_p1
+            and the further policies.
         planner: exact planner that judges.
+        parameters: any settings of the planner but keep_every, such as model=feet.
         keep_every: values of N: one configuration in every N is planned for.
         starts: number of starts on stairs and rubble.
         course_starts: number of starts on the long course, whose guide paths take longer.
@@ -62,8 +64,15 @@ def figures(
     if not keep_every or min(keep_every) < 1 or course_starts < 1:
         raise InputError("--keep-every and --course-starts need numbers of 1 or more")
     suite = make_suite("thesis", starts, seed, held_out)
-    settings = settings_from(find_planner(planner, [planner]))
+    given = settings_of(parameters or ())
+    if "keep_every" in given:
+        raise InputError("--parameters keep_every: give the numbers to measure as --keep-every")
+    stated = settings_from(find_planner(planner, [planner]), **given)
     candidate = load_candidate(run)
+    robot = candidate.env.config.robot
+    settings = stated.for_robot(robot)
+    if note := stated.note_for(robot):
+        print(note)
     further = parse_policies(policies or ())
     wanted = list(methods) if methods else [*METHODS, *further]
     contenders = make_contenders(candidate, further, wanted)

@@ -9,12 +9,12 @@ def height_band(judged: Judged, along: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Return lowest, mean and highest root height at each x, of the paths that reached the goal.
 
     Args:
-        judged: walks and verdicts.
+        judged: roll-outs and verdicts of a cell.
         along: x [m], ascending; the result is NaN where fewer than half of the paths pass.
     """
     heights = []
-    for index in np.flatnonzero(judged.walk.reached):
-        path = judged.walk.path(int(index)).astype(np.float64)
+    for index in np.flatnonzero(judged.roll_outs.reached):
+        path = judged.roll_outs.path(int(index)).astype(np.float64)
         x = np.maximum.accumulate(path[:, 0])
         heights.append(np.interp(along, x, path[:, 2], left=np.nan, right=np.nan))
     if not heights:

@@ -1,4 +1,4 @@
-"""Walk a suite and count: which roll-outs arrive, fall or stop."""
+"""Roll out a suite and count: which roll-outs arrive, fall or stop."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.result_file import AreaResult, CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.rollout import Trips, roll_out
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.guide import SteeringMethod, Trips, roll_out
 from jaxleas.types import GuidePath
 
 AREA_NAMES = ("near", "far")
@@ -20,7 +19,7 @@ DIGITS = 6  # of fractions and lengths in results: exact for a million starts
 
 
 @dataclass(frozen=True)
-class Walk:
+class CellRollOut:
     """The roll-outs of one method from the starts of one cell, on the host.
 
     Attributes:
@@ -54,13 +53,13 @@ class Walk:
         return GuidePath.of_walk(self, self.valid, index, time_step)[: self.end[index] + 1]
 
 
-def walk(
+def roll_out_cell(
     env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
-) -> Walk:
-    """Walk from every start of a cell, all at once."""
+) -> CellRollOut:
+    """Return the roll-outs from every start of a cell, all at once."""
     trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints)
     result = roll_out(env, method, trips, steps, env.config.goal_radius)
-    return Walk(
+    return CellRollOut(
         starts=starts,
         position=np.asarray(result.position),
         yaw=np.asarray(result.yaw),
@@ -102,12 +101,12 @@ def judge(
                 f"{suite.name} {position + 1}/{len(suite.cells)}:"
                 f" {name} on {cell.name} at {cell.yaw:.0f} deg"
             )
-            walked = walk(env, grounds, method, starts, suite.steps_of(cell))
+            walked = roll_out_cell(env, grounds, method, starts, suite.steps_of(cell))
             results.append(summarise(cell, name, walked, env.config.limits.time_step))
     return results
 
 
-def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellResult:
+def summarise(cell: Cell, method: str, walked: CellRollOut, time_step: float) -> CellResult:
     """Count the outcomes of a cell and measure the paths of those that arrived.
 
     Args:
@@ -145,7 +144,7 @@ def summarise(cell: Cell, method: str, walked: Walk, time_step: float) -> CellRe
 
 
 def path_lengths(
-    walked: Walk,
+    walked: CellRollOut,
 ) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, " N"]]:
     """Return how far each root went, and the straight-line length through its waypoints [m].
 
@@ -163,7 +162,7 @@ def path_lengths(
     return (steps * before_end).sum(axis=1), straight
 
 
-def _areas(walked: Walk) -> dict[str, AreaResult]:
+def _areas(walked: CellRollOut) -> dict[str, AreaResult]:
     area = walked.starts.area
     if area.max() == 0:
         return {}

@@ -6,8 +6,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.configuration.bounds import Count, Fraction, NonNegative
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Count, Fraction, NonNegative, Strict
 from jaxleas.files import read_typed, write_json
 
 VERSION = 1
@@ -103,7 +102,7 @@ class Evaluation(Strict):
     fingerprint: str | None = None
     """SHA-256 of the policy's file, to check that it is still the one that was judged."""
     policies: dict[str, str] = Field(default_factory=dict)
-    """SHA-256 of each further policy's file, by the method's name."""
+    """SHA-256 of the file of each further policy or method of one's own, by the method's name."""
     planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Settings of the exact planners, by name."""
     foresight: dict[str, Any] | None = None

@@ -1,7 +1,7 @@
 """The risk dial, measured: what refusing guide paths costs and gains at every threshold.
 
-A walk's probability of success only falls along its way, so refusing below a threshold during the
-walk refuses the very guide paths whose last probability lies below it. One judgement of all guide
+The probability of success only falls along a guide path, so refusing below a threshold on the way
+refuses the very guide paths whose last probability lies below it. One judgement of all guide
 paths therefore shows what every threshold would have done.
 """
 
@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Judged
 from jaxleas.evaluation.judge import path_lengths
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 
 
 @dataclass(frozen=True)
@@ -70,11 +70,11 @@ def foresee(
     Args:
         env: environment whose local terrain the surrogate receives.
         atlas: terrains that were walked on.
-        judged: walks and verdicts.
+        judged: roll-outs and verdicts of a cell.
         surrogate: surrogate that is asked.
         time_step: time between two configurations [s].
     """
-    walked, keep = judged.walk, surrogate.identity.keep_every
+    walked, keep = judged.roll_outs, surrogate.identity.keep_every
     rows = np.flatnonzero(walked.reached)
     survival = np.zeros(len(walked.reached))
     if len(rows):

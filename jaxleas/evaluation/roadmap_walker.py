@@ -5,14 +5,20 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Bool
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Walker
-from jaxleas.evaluation.judge import Walk
+from jaxleas.evaluation.judge import CellRollOut
 from jaxleas.evaluation.starts import Grounds, Starts
-from jaxleas.guide.navigation_command import make_navigator
-from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
-from jaxleas.guide.roadmaps.navigation import motion_at
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.guide import (
+    Budget,
+    Edges,
+    Navigation,
+    Navigator,
+    Places,
+    SteeringMethod,
+    make_navigator,
+    motion_at,
+)
 from jaxleas.types import GuidePath, RootMotion
 
 CONNECTIONS = 200
@@ -20,22 +26,22 @@ CONNECTIONS = 200
 HOURS = 36_000.0
 
 
-def roadmap_walker(env: SteeringEnv, method: SteeringMethod, steering: str) -> Walker:
+def roadmap_walker(env: SteeringEnv, method: SteeringMethod, edges: Edges) -> Walker:
     """Return a walker that uses a steering method and finds waypoints by RRT where needed.
 
     Args:
         env: environment that decides what is valid.
         method: steering method that connects waypoints.
-        steering: kind of steering method, which limits how far an edge may reach.
+        edges: edges of a roadmap that suit the method.
     """
 
-    def walks(grounds: Grounds, starts: Starts, steps: int) -> Walk:
+    def walks(grounds: Grounds, starts: Starts, steps: int) -> CellRollOut:
         navigators: dict[int, Navigator] = {}
         found = []
         for number, index in enumerate(np.asarray(starts.map_index).tolist()):
             if index not in navigators:
                 places = Places(env, grounds.maps[index])
-                navigators[index] = make_navigator(places, method, steering, "rrt")
+                navigators[index] = make_navigator(places, method, edges, "rrt")
             found.append(_navigate(navigators[index], starts, number, steps))
         return stack([path for path, _ in found], np.array([each for _, each in found]), starts)
 
@@ -64,8 +70,10 @@ def _navigate(
     return path, len(path) - 1 <= steps
 
 
-def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts) -> Walk:
-    """Return guide paths as the walks of a cell; the last configuration of each is repeated.
+def stack(
+    paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: Starts
+) -> CellRollOut:
+    """Return guide paths as the roll-outs of a cell; the last configuration of each is repeated.
 
     A path that ends before its goal is valid as far as it goes: it counts as stopped.
     """
@@ -77,7 +85,7 @@ def stack(paths: Sequence[GuidePath], reached: Bool[np.ndarray, " N"], starts: S
 
     valid = padded("valid").astype(bool)
     invalid = np.any(~valid, axis=1)
-    return Walk(
+    return CellRollOut(
         starts=starts,
         position=padded("position"),
         yaw=padded("yaw"),

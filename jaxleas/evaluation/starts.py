@@ -11,13 +11,10 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv, standing_position
 from jaxleas.evaluation.suites import Cell
-from jaxleas.geometry.rotations import wrap_angle_on_host
-from jaxleas.terrain.atlas import Atlas, make_atlas
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.rasterise import rasterise
-from jaxleas.terrain.scenarios import Scenario
+from jaxleas.geometry import wrap_angle_on_host
+from jaxleas.terrain import Atlas, HeightMap, Scenario, make_atlas, rasterise
 from jaxleas.types import InputError, RootMotion, is_ground
 
 RESOLUTION = 0.04
@@ -101,7 +98,7 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
         drawn = rng.uniform(low, high)
         horizontal = np.where(valid[:, None], horizontal, drawn)
         ahead = _way_ahead(cell, scene, goals[scene, 0, :2] - horizontal)
-        motion, judged = _stand(
+        motion, judged = _standing(
             env,
             grounds.atlas,
             map_index,
@@ -171,7 +168,7 @@ def _waypoints(
 
 
 @partial(jax.jit, static_argnums=0)
-def _stand(
+def _standing(
     env: SteeringEnv,
     atlas: Atlas,
     map_index: Int[Array, " N"],
@@ -180,9 +177,9 @@ def _stand(
     speed: Float[Array, ""],
 ) -> tuple[RootMotion, Array]:
     """Return roots at walking height above the ground, and whether they are valid there."""
-    ground = atlas.height_at(map_index, horizontal[:, None, :])
-    position = jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
+    ground = atlas.height_at(map_index, horizontal[:, None, :])[:, 0]
+    position = standing_position(env.robot, atlas, map_index, horizontal)
     ahead = jnp.stack([jnp.cos(yaw), jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1)
     motion = RootMotion(position=position, velocity=speed * ahead, yaw=yaw)
     margin = env.condition(env.local_heights(atlas, map_index, motion), motion)
-    return motion, (margin >= 0.0) & is_ground(ground[:, 0])
+    return motion, (margin >= 0.0) & is_ground(ground)

@@ -1,14 +1,10 @@
-"""Titles of cells and methods for readers."""
+"""Titles of cells and methods for readers, and the colours of methods."""
 
-from jaxleas.contacts.registry import PLANNERS, title_of
-from jaxleas.guide.registry import BASELINES
+from jaxleas.contacts import PLANNERS, title_of
+from jaxleas.guide import Method, method_of
 
-METHOD_TITLES = {
-    **{name: each.title for name, each in BASELINES.items()},
-    "rb_kino_rrt": "RB-Kino + RRT",
-    "leas_p1": "LEAS-P1",
-}
 _REFINED = "leas_p2_"  # followed by the name of the planner that the policy was refined against
+_REFINED_COLOUR = "#c33d2e"
 
 
 def cell_title(name: str) -> str:
@@ -20,7 +16,16 @@ def method_title(name: str) -> str:
     """Return a method's title for readers."""
     if name in refined_names():
         return f"LEAS-P2 ({title_of(name.removeprefix(_REFINED))})"
-    return METHOD_TITLES.get(name, name)
+    method = method_of(name)
+    return name if method is None else method.title
+
+
+def method_colour(name: str) -> str:
+    """Return a method's colour in pictures."""
+    if name in refined_names():
+        return _REFINED_COLOUR
+    method = method_of(name)
+    return Method.colour if method is None else method.colour
 
 
 def refined_name(planner: str) -> str:

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any, NoReturn
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_BYTES = 64 * 2**20
 MAX_CONTAINERS = 4_000_000
@@ -29,7 +29,7 @@ def parse_json(text: bytes | str, where: str) -> Any:
         raise InputError(f"{where} is {len(text)} bytes of JSON, more than the {MAX_BYTES} read")
     if isinstance(text, bytes):
         try:
-            text = text.decode("utf-8")
+            text = text.decode("utf-8-sig")  # some editors put a byte order mark in front
         except UnicodeDecodeError as error:
             raise InputError(
                 f"{where} is not valid JSON: {error.reason} at {error.start}"

@@ -6,14 +6,16 @@ a dozen kinds of exceptions for damaged files. Plain arrays are simple: a zip ar
 """
 
 import math
+import os
 import re
 import zipfile
 import zlib
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_BYTES = 2**30  # a larger array file is a mistake or an attack, not a map
 MAX_MEMBERS = 10_000
@@ -65,7 +67,7 @@ def read_arrays(
             if len(set(names)) < len(names):
                 raise DamagedError("it holds two arrays of one name")
             return {
-                name: _array(archive, entry)
+                name: _member(archive, entry)
                 for name, entry in zip(names, entries, strict=True)
                 if only in (None, name)
             }
@@ -102,28 +104,45 @@ def _name(entry: zipfile.ZipInfo) -> str:
     return name
 
 
-def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
+def read_plain_array(path: str | Path) -> np.ndarray:
+    """Return the array of a .npy file; bytes after its numbers are passed over.
+
+    Raises:
+        DamagedError: the file is no plain array.
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            return _array(stream, size, Path(path).name, tail=True)
+    except _DAMAGES as error:
+        raise DamagedError(_words(error)) from error
+
+
+def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
     with archive.open(entry) as stream:
-        kind, shape, fortran, begin = _header(stream.read(12), stream)
-        count = math.prod(shape)
-        if begin + count * kind.itemsize != entry.file_size:
-            raise DamagedError(
-                f"{entry.filename} is {entry.file_size} bytes, which do not make shape {shape}"
-            )
-        # Only the stated size: `read()` would unpack all that the member holds before cutting it.
-        content = stream.read(count * kind.itemsize)
-        if len(content) != count * kind.itemsize:
-            raise DamagedError(f"{entry.filename} is cut short")
+        return _array(stream, entry.file_size, entry.filename)
+
+
+def _array(stream: IO[bytes], size: int, name: str, tail: bool = False) -> np.ndarray:
+    kind, shape, fortran, begin = _header(stream.read(12), stream)
+    count = math.prod(shape)
+    end = begin + count * kind.itemsize
+    if end > size or (end < size and not tail):
+        raise DamagedError(f"{name} is {size} bytes, which do not make shape {shape}")
+    # Only the stated size: `read()` would unpack all that the member holds before cutting it.
+    content = stream.read(count * kind.itemsize)
+    if len(content) != count * kind.itemsize:
+        raise DamagedError(f"{name} is cut short")
     flat = np.frombuffer(bytearray(content), kind, count)  # a bytearray is writable
     array = flat.reshape(shape, order="F" if fortran else "C")
     if not kind.isnative:  # JAX accepts only the native byte order
         array = array.astype(kind.newbyteorder("="))
     if kind.kind == "U":
-        _require_unicode(array, entry.filename)
+        _require_unicode(array, name)
     return array
 
 
-def _header(start: bytes, stream: object) -> tuple[np.dtype, tuple[int, ...], bool, int]:
+def _header(start: bytes, stream: IO[bytes]) -> tuple[np.dtype, tuple[int, ...], bool, int]:
     """Return type, shape, order and length of the header of an array."""
     if len(start) < 12 or start[:6] != b"\x93NUMPY" or start[6] not in (1, 2, 3):
         raise DamagedError("a member is no array of NumPy's")
@@ -132,7 +151,7 @@ def _header(start: bytes, stream: object) -> tuple[np.dtype, tuple[int, ...], bo
     if length > MAX_HEADER:
         raise DamagedError(f"an array has a header of {length} bytes")
     begun = b"" if wide else start[10:12]
-    text = begun + stream.read(max(length - len(begun), 0))  # type: ignore[attr-defined]
+    text = begun + stream.read(max(length - len(begun), 0))
     found = _HEADER.fullmatch(text)
     if found is None:
         raise DamagedError("an array is no plain one: of Python objects or records, or damaged")

@@ -8,8 +8,8 @@ import numpy as np
 
 from jaxleas.files.json_text import MAX_BYTES as MAX_JSON_BYTES
 from jaxleas.files.json_text import parse_json
-from jaxleas.files.npz import MAX_BYTES, DamagedError, read_arrays
-from jaxleas.types.errors import InputError
+from jaxleas.files.npz import MAX_BYTES, DamagedError, read_arrays, read_plain_array
+from jaxleas.types import InputError
 
 
 def read_json(path: str | Path) -> Any:
@@ -48,6 +48,19 @@ def read_npz(
     return arrays
 
 
+def read_array(path: str | Path, max_bytes: int = MAX_BYTES) -> np.ndarray:
+    """Return the array of a .npy file; Python objects are refused.
+
+    Raises:
+        InputError: the file is missing, damaged, or larger than `max_bytes`.
+    """
+    require_file(path, max_bytes)
+    try:
+        return read_plain_array(path)
+    except DamagedError as error:
+        raise InputError(f"{path} is not a readable .npy file: {error}") from error
+
+
 def read_bytes(path: str | Path, max_bytes: int) -> bytes:
     """Return the content of a file.
 
@@ -64,6 +77,18 @@ def read_bytes(path: str | Path, max_bytes: int) -> bytes:
     if len(content) > max_bytes:
         raise InputError(f"{path} is larger than the {max_bytes} bytes such a file may have")
     return content
+
+
+def require_file(path: str | Path, max_bytes: int) -> None:
+    """Refuse a file that is missing, or larger than `max_bytes`, before it is read.
+
+    Raises:
+        InputError: the message says which.
+    """
+    _require_file(path)
+    size = Path(path).stat().st_size
+    if size > max_bytes:
+        raise InputError(f"{path} is {size} bytes, more than the {max_bytes} such a file may have")
 
 
 def require_version(content: dict[str, Any], version: int, where: str | Path) -> None:

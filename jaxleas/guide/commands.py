@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types import InputError, is_ground
+from jaxleas.guide.registry import SteeringName, find_method
+from jaxleas.terrain import READING, Reading
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.files import Reason
-    from jaxleas.guide.onnx_policy import OnnxPolicy
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.terrain.height_map import HeightMap
-    from jaxleas.training.policy import Policy
+    from jaxleas.terrain import HeightMap
     from jaxleas.types import Query
 
 MAX_CONFIGURATIONS = 20_000_000  # in all paths together: about a gigabyte during the roll-out
@@ -30,7 +29,7 @@ def rollout(
     queries: Path,
     out: Path,
     steps: int = 800,
-    steering: str = "leas",
+    steering: SteeringName = "leas",
     picture: Path | None = None,
     reading: Reading = READING,
     allow: Sequence[str] | None = None,
@@ -39,23 +38,23 @@ def rollout(
 
     Args:
         policy: a run folder, a policy.npz, or an .onnx.
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         queries: .json list of {position, yaw, velocity, goal}.
         out: the guide paths, .npz.
         steps: maximum number of configurations after the first one of a path.
-        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
-            MODULE:CLASS of your own, under its conditions.
+        steering: steering method: leas is the policy; kino, RB-Kino, and lin, RB-Lin, know no
+            terrain.
         picture: draw the paths from above (.png, .svg, .pdf).
         reading: what the terrain file does not state itself.
         allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
             condition; by default R* and C.
     """
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.picture import draw_guide_paths, require_picture
     from jaxleas.guide.rollout import paths
-    from jaxleas.terrain.importers import import_terrain
+    from jaxleas.terrain import import_terrain
 
     asked = read_queries(queries)
     _require_sizes(steps, len(asked), out)
@@ -66,7 +65,7 @@ def rollout(
     require_on_terrain(queries, asked, ground)
     env = SteeringEnv(walker.config, allow=allow or ())
     config = env.config
-    method = steering_named(steering, env, walker)
+    method = find_method(steering).make(env, walker)
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
@@ -81,19 +80,6 @@ def rollout(
     )
 
 
-def steering_named(
-    steering: str, env: "SteeringEnv", policy: "Policy | OnnxPolicy | None"
-) -> "SteeringMethod":
-    """Return the steering method of a name, tuned to the task's speed; LEAS needs a policy."""
-    from jaxleas.guide.leas import leas
-    from jaxleas.guide.registry import LEAS, baseline_named
-
-    if steering == LEAS:
-        assert policy is not None
-        return leas(env, policy)
-    return baseline_named(steering, env)
-
-
 def walk_queries(
     env: "SteeringEnv",
     method: "SteeringMethod",
@@ -104,9 +90,10 @@ def walk_queries(
     """Return the roll-out of queries on one height map."""
     import jax.numpy as jnp
 
-    from jaxleas.geometry.rotations import wrap_angle_on_host
+    from jaxleas.geometry import wrap_angle_on_host
+    from jaxleas.guide.places import walking_heights
     from jaxleas.guide.rollout import Trips, roll_out
-    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.terrain import make_atlas
     from jaxleas.types import RootMotion
 
     yaw = np.array([query.yaw for query in queries])
@@ -117,8 +104,8 @@ def walk_queries(
     )
     # The height wanted at the goal: walking height; over the void, that of the start.
     goals = np.array([query.goal for query in queries])
-    height = terrain.height_at(goals) + env.robot.walking_height
-    height = np.where(is_ground(height), height, [query.position[2] for query in queries])
+    start_heights = np.array([query.position[2] for query in queries])
+    height = walking_heights(env.robot, terrain.height_at(goals), start_heights)
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
     trips = Trips(
         make_atlas([terrain]),

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jaxleas.guide.commands import steering_named
-from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types import InputError, RootMotion
+from jaxleas.guide.registry import Method, SteeringName, find_method
+from jaxleas.terrain import READING, Reading
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.envs.steering.env import SteeringEnv
-    from jaxleas.guide.roadmaps import Navigation, Navigator, Places
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide.roadmaps import Navigation
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.terrain.scene import Scene
 
 FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
@@ -24,7 +23,7 @@ def navigate(
     from_: str,
     to: str,
     terrain: Path,
-    steering: str = "leas",
+    steering: SteeringName = "leas",
     planner: Literal["rrt", "prm", "none"] = "rrt",
     policy: Path | None = None,
     limit: float = 20.0,
@@ -39,13 +38,13 @@ def navigate(
     Args:
         from_: start as x,y or x,y,yaw [m, rad]; without yaw the robot faces the goal if it can.
         to: goal as x,y [m].
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
-        steering: leas = the policy; kino = RB-Kino and lin = RB-Lin, which know no terrain, or
-            MODULE:CLASS of your own.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
+        steering: steering method: leas is the policy; kino, RB-Kino, and lin, RB-Lin, know no
+            terrain.
         planner: rrt or prm search for waypoints if the direct walk to the goal fails; none = the
             direct walk only.
-        policy: a run folder, a policy.npz or an .onnx; needed for leas; if given, kino and lin use
-            its task, too.
+        policy: a run folder, a policy.npz or an .onnx, which leas needs; the other methods use its
+            task if it is given.
         limit: time after which the best partial path is written [s].
         connections: maximum number of connections that the search may try; by default as many as
             the time allows.
@@ -59,10 +58,12 @@ def navigate(
     """
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.roadmaps import Budget, Places
-    from jaxleas.guide.roadmaps.exact import judge_exactly, require_exact_start, scene_of
-    from jaxleas.guide.roadmaps.search import import_ompl
-    from jaxleas.terrain.importers import import_terrain
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.guide.roadmaps.exact import check_exactly, require_exact_start, scene_of
+    from jaxleas.guide.roadmaps.ompl import import_ompl
+    from jaxleas.guide.roadmaps.tuning import make_navigator
+    from jaxleas.guide.starts import start_motion
+    from jaxleas.terrain import import_terrain
+    from jaxleas.xla import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)
     goal, _ = _place("--to", to, may_turn=False)
@@ -76,83 +77,23 @@ def navigate(
     if planner != "none":
         import_ompl()
     keep_compiled_programs()
-    env, method = _steering(steering, policy)
+    named = find_method(steering)
+    env, method = _steering(named, policy)
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
     places.require_valid("--to", goal, None)
-    scene = scene_of(terrain, reading.up, reading.scale)
+    scene = scene_of(terrain, reading)
     if scene is not None:
         require_exact_start(places, scene, motion)
-    navigator = make_navigator(places, method, steering, planner, scene)
+    navigator = make_navigator(places, method, named.edges, planner, scene)
     found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
-    verdict = None if scene is None else judge_exactly(env.robot, scene, found.path)
+    check = None if scene is None else check_exactly(env.robot, scene, found.path)
     _write(out, found)
     if picture is not None:
         draw_navigation(picture, ground, found.path, found.waypoints, goal)
-    exactly = "" if verdict is None else f"; {verdict}"
+    exactly = "" if check is None else f"; {check}"
     print(_sentence(out, found, goal, exactly, searched=planner != "none"))
-
-
-def make_navigator(
-    places: "Places",
-    method: "SteeringMethod",
-    steering: str,
-    planner: str,
-    scene: "Scene | None" = None,
-    reach: float | None = None,
-) -> "Navigator":
-    """Return a navigator tuned for a steering method.
-
-    LEAS passes near a waypoint and avoids obstacles on the way: its edges are long, and waypoints
-    count as reached within the goal's radius. The baselines reach a waypoint exactly, and only
-    where the straight way is free: their edges are short and followed to the centimetre, because
-    the way that a cut corner takes has not been tried.
-
-    Args:
-        places: places of the terrain where the robot can stand.
-        method: steering method.
-        steering: name of the steering method.
-        planner: rrt, prm or none.
-        scene: polygons of the terrain; the exact conditions on them judge every whole path.
-        reach: maximum length of an edge of a tree [m], instead of the tuned length.
-    """
-    from jaxleas.guide.roadmaps.connections import Connector
-    from jaxleas.guide.roadmaps.exact import refusals
-    from jaxleas.guide.roadmaps.navigation import Navigator
-
-    config, robot = places.env.config, places.env.robot
-    usual, radius = (4.0, config.goal_radius) if steering == "leas" else (1.5, 0.01)
-    reach = usual if reach is None else reach
-    # A quarter more than the time of the straight way, and time to turn around.
-    straight = reach / (config.desired_speed * config.limits.time_step)
-    turn = math.pi / (config.limits.max_turn_rate * config.limits.time_step)
-    steps = math.ceil(1.25 * straight + turn)
-    connector = Connector(places, method, radius, steps)
-    refused = None if scene is None else lambda path: np.logical_or(*refusals(robot, scene, path))
-    return Navigator(connector, planner, reach, refused)  # type: ignore[arg-type]
-
-
-def start_motion(
-    places: "Places", start: tuple[float, float], goal: tuple[float, float], yaw: float | None
-) -> RootMotion:
-    """Return the root motion of a robot at rest at the start.
-
-    Without a yaw it takes the valid heading nearest to the direction of the goal.
-
-    Raises:
-        InputError: the robot cannot stand there.
-    """
-    from jaxleas.guide.places import HEADINGS
-
-    if yaw is None:
-        facing = math.atan2(goal[1] - start[1], goal[0] - start[0])
-        headings = facing + np.array(sorted(HEADINGS, key=abs))
-        valid = places.valid(np.tile(start, (len(headings), 1)), headings)
-        yaw = float(headings[np.argmax(valid)]) if valid.any() else None
-    pose = places.require_valid("--from", start, yaw)
-    motion = places.standing(np.array([start]), np.array([pose.yaw]))
-    return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])
 
 
 def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float], float | None]:
@@ -172,19 +113,20 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
     return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
 
 
-def _steering(steering: str, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
-    from jaxleas.envs.steering.config import SteeringConfig
-    from jaxleas.envs.steering.env import SteeringEnv
+def _steering(method: Method, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
+    from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
 
     if policy is None:
-        if steering == "leas":
-            raise InputError("--steering leas needs --policy: a run folder, a .npz or an .onnx")
+        if method.needs_policy:
+            raise InputError(
+                f"--steering {method.name} needs --policy: a run folder, a .npz or an .onnx"
+            )
         env = SteeringEnv(SteeringConfig())
-        return env, steering_named(steering, env, None)
-    walker = load_policy(policy)
-    env = SteeringEnv(walker.config)
-    return env, steering_named(steering, env, walker)
+        return env, method.make(env, None)
+    loaded = load_policy(policy)
+    env = SteeringEnv(loaded.config)
+    return env, method.make(env, loaded)
 
 
 def _write(out: Path, found: "Navigation") -> None:
@@ -194,7 +136,7 @@ def _write(out: Path, found: "Navigation") -> None:
 
 
 def _sentence(
-    out: Path, found: "Navigation", goal: tuple[float, float], verdict: str, searched: bool
+    out: Path, found: "Navigation", goal: tuple[float, float], exactly: str, searched: bool
 ) -> str:
     count = len(found.waypoints) - 1
     between = f"{count} waypoint{'' if count == 1 else 's'} on the way" if count else "no waypoints"
@@ -202,11 +144,11 @@ def _sentence(
     if found.reached:
         return (
             f"{out}: reached, {found.path.length:.2f} m in {found.path.time[-1]:.0f} s of walking,"
-            f" {between} ({effort}){verdict}"
+            f" {between} ({effort}){exactly}"
         )
     left = math.dist(found.path.position[-1, :2], goal)
     what = "was not reached within the limit" if searched else "was not reached by walking to it"
     return (
         f"{out}: the goal {what} ({effort}); the best partial path ends"
-        f" {left:.2f} m before it{verdict}"
+        f" {left:.2f} m before it{exactly}"
     )

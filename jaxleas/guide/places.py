@@ -1,7 +1,6 @@
 """Where a robot can stand: draw such places, and explain why it cannot stand elsewhere."""
 
 import math
-from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -9,33 +8,21 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.conditions import collision, strict_reachability
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.geometry.rotations import wrap_angle_on_host
-from jaxleas.terrain.atlas import make_atlas
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion, is_ground
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.geometry import wrap_angle_on_host
+from jaxleas.robots import Robot
+from jaxleas.terrain import HeightMap, make_atlas
+from jaxleas.types import InputError, RootMotion, RootPose, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
 """A robot can stand at a place if any of these headings is valid there [rad]."""
 NEARBY = 0.1
 """Spacing of the grid on which the nearest valid pose is sought [m]."""
-_AT_ONCE, _FEW = 4096, 16  # poses judged in one compiled call
+_AT_ONCE, _FEW = 4096, 16  # poses tried in one compiled call
 
 
 MOST_TRIED = 1_000_000
 """Maximum number of points of that grid; on larger terrain the grid is coarser."""
-
-
-class Pose(NamedTuple):
-    """The position and heading of an upright root.
-
-    Attributes:
-        position: position of the root in the world [m].
-        yaw: heading [rad].
-    """
-
-    position: Float[np.ndarray, " 3"]
-    yaw: float
 
 
 class Places:
@@ -50,30 +37,34 @@ class Places:
         """
         self.env, self.terrain = env, terrain
         self.atlas = make_atlas([terrain])
-        judges = {
+        conditions = {
             "strict reachability R*": strict_reachability(env.robot, env.points_in_root),
             "collision C": collision(env.robot, env.points_in_root),
             "the condition": env.condition,
         }
 
-        def judge(motion: RootMotion) -> dict[str, jax.Array]:
+        def margins(motion: RootMotion) -> dict[str, jax.Array]:
             heights = env.local_heights(self.atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
-            return {name: condition(heights, motion) for name, condition in judges.items()}
+            return {name: condition(heights, motion) for name, condition in conditions.items()}
 
-        self._judge = jax.jit(judge)
+        self._margins = jax.jit(margins)
 
     def root_height(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, " N"]:
         """Return the root's z at walking height [m]; NaN where there is no ground."""
         ground = self.terrain.height_at(places).astype(np.float64)
         return ground + self.env.robot.walking_height
 
+    def standing_positions(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N 3"]:
+        """Return root positions at walking height [m]; where there is no ground, above z = 0."""
+        ground = self.terrain.height_at(places).astype(np.float64)
+        height = walking_heights(self.env.robot, ground, self.env.robot.walking_height)
+        return np.column_stack([places, height]).astype(np.float32)
+
     def standing(
         self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
     ) -> RootMotion:
         """Return roots at rest at walking height; where there is no ground, above z = 0."""
-        height = self.root_height(places)
-        height = np.where(is_ground(height), height, self.env.robot.walking_height)
-        position = np.column_stack([places, height]).astype(np.float32)
+        position = self.standing_positions(places)
         wrapped = wrap_angle_on_host(yaw)
         return on_host(position, np.zeros_like(position), wrapped.astype(np.float32))
 
@@ -88,7 +79,7 @@ class Places:
             count = len(some.yaw)
             size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes are enough
             padded = jax.tree.map(lambda leaf, n=count, to=size: _padded(leaf, to, n), some)
-            parts.append({k: np.asarray(v)[:count] for k, v in self._judge(padded).items()})
+            parts.append({k: np.asarray(v)[:count] for k, v in self._margins(padded).items()})
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def valid(
@@ -132,7 +123,7 @@ class Places:
                 return np.array(found[:count])
         raise InputError("there is hardly a place on this terrain where the robot can stand")
 
-    def require_valid(self, name: str, place: tuple[float, float], yaw: float | None) -> Pose:
+    def require_valid(self, name: str, place: tuple[float, float], yaw: float | None) -> RootPose:
         """Return the pose of a robot that stands at a place, if it is valid.
 
         Args:
@@ -152,9 +143,13 @@ class Places:
             return self.pose(here[0], chosen)
         raise InputError(f"{name} {place[0]:g},{place[1]:g}: {self._why(here, headings, yaw)}")
 
-    def pose(self, place: Float[np.ndarray, " 2"], yaw: float) -> Pose:
-        """Return the pose of a root at walking height; z is NaN where there is no ground."""
-        return Pose(np.array([*place, self.root_height(place[None])[0]]), yaw)
+    def pose(self, place: Float[np.ndarray, " 2"], yaw: float) -> RootPose:
+        """Return the pose of a root at walking height.
+
+        Raises:
+            InputError: there is no ground.
+        """
+        return RootPose.from_yaw(np.array([*place, self.root_height(place[None])[0]]), yaw)
 
     def why_invalid(
         self, place: Float[np.ndarray, " 2"], headings: Float[np.ndarray, " H"], facing: str
@@ -216,6 +211,19 @@ class Places:
                 at = some[index // len(turn)]
                 return (float(at[0]), float(at[1])), float(heading)
         return None
+
+
+def walking_heights(
+    robot: Robot, ground: Float[np.ndarray, " N"], over_void: Float[np.ndarray, " N"] | float
+) -> Float[np.ndarray, " N"]:
+    """Return the root's z at walking height over some ground [m].
+
+    Args:
+        robot: robot that walks.
+        ground: heights of the ground [m], from a height map.
+        over_void: z of the root where there is no ground [m].
+    """
+    return np.where(is_ground(ground), ground + robot.walking_height, over_void)
 
 
 def on_host(position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray) -> RootMotion:

@@ -5,14 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import DEFAULT_JUDGE, PlannerName, find_planner
-from jaxleas.types.errors import InputError
+from jaxleas.contacts import DEFAULT_JUDGE, PlannerName, find_planner, settings_from
+from jaxleas.robots import DEFAULT_ROBOT
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from jaxleas.files import FolderLock
-    from jaxleas.workers.processes import Workers
+    from jaxleas.workers import Workers
 
 
 def label(
@@ -40,7 +39,7 @@ def label(
 
     Args:
         guides: guide path files, .npz.
-        scene: scene that they cross, .json; or an .stl or .obj mesh in metres, z up.
+        scene: scene that they cross, .json; or a mesh in metres, z up.
         out: folder of the verdict files; the same command continues where it was interrupted.
         planner: planner that judges.
         robot: robot that walks.
@@ -49,7 +48,8 @@ def label(
         samples: sampling: number of leg configurations in the data base, 25000 by default.
         heuristic: sampling: score that orders the candidates, fixed_step by default.
         seed: sampling: seed of the data base, 0 by default.
-        model: mip, sl1m: two_com (with the centre of mass, the default) or feet.
+        model: mip, sl1m: two_com (with the centre of mass) or feet; by default two_com where the
+            robot has two feet and step polytopes of its centre of mass.
         candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
         window: mip, sl1m: edge of the window, 0.8 by default [m].
         time_limit: mip, sl1m: time limit per guide path, 60 by default; then it stays
@@ -67,9 +67,9 @@ def label(
 
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.oracle import Oracle
-    from jaxleas.labels.settings import settings_of
+    from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
-    from jaxleas.workers.processes import require_count
+    from jaxleas.workers import require_count
 
     given = {
         "keep_every": keep_every,
@@ -83,13 +83,12 @@ def label(
         "max_combinations": max_combinations,
         "weights": weights,
     }
-    further = settings_of(parameters or ())
-    if twice := next((name for name in further if given.get(name) is not None), None):
-        option = twice.replace("_", "-")
-        raise InputError(f"--{option} and --parameters {twice} say the same: give one of them")
-    settings = settings_from(find_planner(planner, [planner]), **(given | further))
+    given = with_parameters(given, settings_of(parameters or ()))
+    settings = settings_from(find_planner(planner, [planner]), **given)
     if processes is not None:
         require_count(processes)
+    if note := settings.note_for(robot):
+        print(note)
     begun = perf_counter()
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
@@ -138,7 +137,7 @@ def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":
     from jaxleas.labels.judging import planner_workers
 
     if workers == "ray":
-        from jaxleas.workers.ray_workers import RayWorkers
+        from jaxleas.workers import RayWorkers
 
         return RayWorkers(processes)
     return planner_workers(max(1, min(processes or os.cpu_count() or 1, tasks)))

@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT, Planner
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import find_planner
-from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts import Planner, PlannerSettings, find_planner, require_settings
+from jaxleas.robots import DEFAULT_ROBOT
 
 
 @dataclass(frozen=True)
@@ -23,10 +21,10 @@ class Oracle:
     robot: str = DEFAULT_ROBOT
 
     def find(self) -> tuple[Planner, PlannerSettings]:
-        """Return the planner and its settings.
+        """Return the planner and its settings, every one stated.
 
         Raises:
-            InputError: there is no such planner, or the settings are another planner's.
+            InputError: there is no such planner or robot, or the settings are another planner's.
         """
         found = find_planner(self.planner, [self.planner])
-        return found, require_settings(found, self.settings)
+        return found, require_settings(found, self.settings, self.robot)

@@ -2,11 +2,9 @@
 
 from collections.abc import Sequence
 
-from jaxleas.contacts.planner import DEFAULT_ROBOT, AskedGuides
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import find_planner
-from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.terrain.scene import Scene
+from jaxleas.contacts import AskedGuides, PlannerSettings, find_planner, require_settings
+from jaxleas.robots import DEFAULT_ROBOT
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, Verdict
 
 
@@ -72,4 +70,4 @@ def ask(planner: str, asked: AskedGuides, settings: PlannerSettings | None = Non
         Verdicts in the order of the guide paths.
     """
     found = find_planner(planner, [planner])
-    return found.judge(asked, require_settings(found, settings))
+    return found.judge(asked, require_settings(found, settings, asked.robot))

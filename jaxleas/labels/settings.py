@@ -1,10 +1,26 @@
 """Planners' settings on a command line."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jaxleas.configuration.yaml_text import parse_yaml
-from jaxleas.types.errors import InputError
+from jaxleas.configuration import parse_yaml
+from jaxleas.types import InputError
+
+
+def with_parameters(given: Mapping[str, Any], further: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings given by options of their own and those given by --parameters, together.
+
+    Args:
+        given: settings that have an option, by name; None where the option is not used.
+        further: settings given by --parameters, by name.
+
+    Raises:
+        InputError: a setting is given both ways.
+    """
+    if twice := next((name for name in further if given.get(name) is not None), None):
+        option = twice.replace("_", "-")
+        raise InputError(f"--{option} and --parameters {twice} say the same: give one of them")
+    return {**given, **further}
 
 
 def settings_of(words: Sequence[str]) -> dict[str, Any]:

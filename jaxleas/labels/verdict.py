@@ -6,8 +6,10 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError, create_model
 
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
+
+ADDED_SINCE = {"cause": None}
+"""Keys that files from before lack, with what they stand for there."""
 
 
 def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
@@ -21,6 +23,8 @@ def verdict_from_json(value: Any, where: str) -> Verdict:
     Raises:
         InputError: the value is not a verdict; the message names `where`.
     """
+    if isinstance(value, dict):
+        value = ADDED_SINCE | value
     names = set(Verdict.__dataclass_fields__)
     if not isinstance(value, dict) or set(value) != names:
         raise InputError(f"{where} is no verdict: it needs the keys {', '.join(sorted(names))}")

@@ -6,16 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from jaxleas.configuration.former import with_present_names
-from jaxleas.configuration.yaml_text import read_mapping
-from jaxleas.envs.registry import DEFAULT_TASK, TASKS
-from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
+from jaxleas.configuration import read_mapping, with_present_names
+from jaxleas.envs import DEFAULT_TASK, TASKS
+from jaxleas.evaluation import CellResult, Evaluation, read_evaluation
 from jaxleas.files import is_held, read_json
-from jaxleas.guide.registry import BASELINES
-from jaxleas.runs.metrics import read_metrics
-from jaxleas.training.config import RunConfig
-from jaxleas.training.run_config import run_config_of
-from jaxleas.types.errors import InputError
+from jaxleas.guide import is_policy
+from jaxleas.runs import read_metrics
+from jaxleas.training import RunConfig, run_config_of
+from jaxleas.types import InputError
 
 State = Literal["finished", "running", "interrupted", "damaged"]
 STATES: tuple[State, ...] = get_args(State)
@@ -81,7 +79,7 @@ class RunRecord:
         """Return the cells of a suite in which the run's policy was judged by the conditions."""
         found = self.evaluations.get(suite)
         cells = () if found is None else found.cells
-        return [each for each in cells if each.method not in BASELINES and each.planner is None]
+        return [each for each in cells if is_policy(each.method) and each.planner is None]
 
 
 def read_record(path: str | Path) -> RunRecord:

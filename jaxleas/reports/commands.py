@@ -1,30 +1,35 @@
 """The commands `jaxleas evaluate` and `jaxleas report`."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import PLANNERS, PlannerName, find_planner
-from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
-from jaxleas.evaluation.contenders import make_contenders, parse_policies
-from jaxleas.evaluation.examination import (
+from jaxleas.contacts import PLANNERS, PlannerName, PlannerSettings, find_planner, settings_from
+from jaxleas.evaluation import (
+    Evaluation,
+    Planning,
+    Reporter,
+    compare,
     examine,
     keep_evaluation,
     load_candidate,
+    load_refusal,
+    make_contenders,
+    make_report_basis,
+    make_suite,
+    parse_policies,
+    read_evaluation,
     run_evaluations,
+    side_by_side_file,
+    write_evaluation,
 )
-from jaxleas.evaluation.progress import Reporter
-from jaxleas.evaluation.refusal import load_refusal
-from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.stage import make_stage
-from jaxleas.evaluation.suites import make_suite
-from jaxleas.labels import PlannerSettings
+from jaxleas.guide import ResultName
+from jaxleas.labels import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def evaluate(
@@ -36,11 +41,12 @@ def evaluate(
     seed: int = 0,
     held_out: bool = False,
     planners: Sequence[PlannerName] | None = None,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[ResultName] | None = None,
     policies: Sequence[str] | None = None,
     time_limit: float | None = None,
     max_combinations: int | None = None,
     slack_weights: Literal["uniform", "guide"] | None = None,
+    parameters: Sequence[str] | None = None,
     processes: int | None = None,
     pictures: Path | None = None,
     surrogate: Path | None = None,
@@ -59,18 +65,19 @@ def evaluate(
         starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
         json: file to write the result to as well; a run folder keeps the result with the most
             starts in RUN/evaluation/.
-        baseline: judge RB-Lin and RB-Kino as well.
+        baseline: judge the baselines, RB-Lin and RB-Kino, as well.
         seed: seed of scenes and starts; training never sees any of them.
         held_out: judge on terrain for choosing and tuning, not on that of evaluation.
         planners: exact planners that judge, or none; for the suite thesis all built-in ones.
-        methods: methods that stand side by side, from rb_lin, rb_kino, rb_kino_rrt, leas_p1 and the
-            further policies; by default all.
+        methods: methods that stand side by side, the further policies among them; by default all.
         policies: further policies, each as name=path.
         time_limit: time limit for one guide path, of mip and sl1m [s]; a path not decided by then
             counts as not planned.
         max_combinations: most combinations that SL1M tries for what its relaxation leaves
             undecided; 0: SL1M without heuristics.
         slack_weights: weights of SL1M's slacks: uniform or guide.
+        parameters: any settings of the planners, such as model=feet; each planner takes those that
+            it has.
         processes: number of processes that plan contacts at the same time; all cores by default.
         pictures: folder for pictures of the guide paths.
         surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
@@ -80,9 +87,16 @@ def evaluate(
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
     """
-    plan = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
+    chosen = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
     names = _planners(suite, planners)
+    given = {
+        "time_limit": time_limit,
+        "max_combinations": max_combinations,
+        "weights": slack_weights,
+    }
+    named = settings_of(parameters or ())
+    settings = _settings(names, with_parameters(given, named), named)
     further = parse_policies(_words(policies) or ())
     if json is not None and json.exists():
         _require_evaluation(json)
@@ -95,7 +109,7 @@ def evaluate(
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
-            evaluation = examine(candidate, plan, baseline=baseline, progress=reporter.say)
+            evaluation = examine(candidate, chosen, baseline=baseline, progress=reporter.say)
         print(plain_table(evaluation))
         if folder is not None:
             keep_evaluation(folder, candidate, evaluation)
@@ -103,25 +117,19 @@ def evaluate(
             write_evaluation(json, evaluation)
             print(f"written: {json}")
         return evaluation
-    given = {
-        "time_limit": time_limit,
-        "max_combinations": max_combinations,
-        "weights": slack_weights,
-    }
+    robot = candidate.env.config.robot
+    for note in dict.fromkeys(filter(None, (each.note_for(robot) for each in settings.values()))):
+        print(note)
     contenders = make_contenders(candidate, further, _words(methods))
     file = json
     if file is None and folder is not None:
-        file = side_by_side_file(folder, plan)
+        file = side_by_side_file(folder, chosen)
     with Reporter() as reporter:
         evaluation = compare(
             candidate,
             contenders,
-            plan,
-            Planning(
-                names,
-                {name: _settings(name, given) for name in names},
-                processes or os.cpu_count() or 1,
-            ),
+            chosen,
+            Planning(names, settings, processes or os.cpu_count() or 1),
             file=file,
             say=reporter.say,
         )
@@ -131,7 +139,7 @@ def evaluate(
     if pictures is not None:
         with Reporter() as reporter:
             drawn = draw_side_by_side(
-                candidate.env, contenders.walkers, plan, names[:1], pictures, reporter.say
+                candidate.env, contenders.walkers, chosen, names[:1], pictures, reporter.say
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation
@@ -158,11 +166,35 @@ def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _settings(planner: str, given: dict[str, Any]) -> PlannerSettings:
-    """Return a planner's settings with the given ones, as far as the planner has such settings."""
-    found = find_planner(planner, [planner])
-    known = found.settings.model_fields
-    return settings_from(found, **{name: each for name, each in given.items() if name in known})
+def _settings(
+    planners: Sequence[str], given: dict[str, Any], named: Collection[str]
+) -> dict[str, PlannerSettings]:
+    """Return the settings of each planner: those given that it has.
+
+    Args:
+        planners: names of the planners.
+        given: all settings given, by name.
+        named: names of those given as --parameters, of which a planner must have each.
+
+    Raises:
+        InputError: no planner has one of the named settings, or a value is out of range.
+    """
+    found = {name: find_planner(name, [name]) for name in planners}
+    known = {name: each.settings.model_fields for name, each in found.items()}
+    for name in named:
+        if not any(name in fields for fields in known.values()):
+            judges = (
+                f"none of the planners {', '.join(planners)} has"
+                if planners
+                else "no planner judges and has"
+            )
+            raise InputError(f"--parameters {name}: {judges} such a setting")
+    return {
+        name: settings_from(
+            each, **{key: value for key, value in given.items() if key in known[name]}
+        )
+        for name, each in found.items()
+    }
 
 
 def _words(given: Sequence[str] | None) -> list[str] | None:
@@ -184,15 +216,15 @@ def report(run: Path, out: Path | None = None) -> Path:
     Raises:
         InputError: the path is not a run folder, or holds no policy yet.
     """
-    from jaxleas.reports.report import write_report
+    from jaxleas.reports.run_report import write_report
 
     run = Path(run)
     if not run.is_dir():
         raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
-        stage = make_stage()
-        evaluations = run_evaluations(candidate, run, stage, reporter.say)
-        path = write_report(run, candidate, evaluations, stage, out, reporter.say)
+        basis = make_report_basis()
+        evaluations = run_evaluations(candidate, run, basis, reporter.say)
+        path = write_report(run, candidate, evaluations, basis, out, reporter.say)
     print(f"written: {path}")
     return path

@@ -6,10 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.contacts.registry import title_of
-from jaxleas.evaluation.figure_file import Figures, StepRow
-from jaxleas.evaluation.figures import BASIC, COURSE
-from jaxleas.evaluation.titles import cell_title, method_title, refined_names
+from jaxleas.contacts import title_of
+from jaxleas.evaluation import (
+    BASIC,
+    COURSE,
+    Figures,
+    StepRow,
+    cell_title,
+    method_colour,
+    method_title,
+)
 from jaxleas.reports.gallery import Picture
 from jaxleas.reports.published import thesis
 
@@ -18,14 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 110
-COLOURS = {
-    "rb_lin": "#7a7a7a",
-    "rb_kino": "#2e9e4f",
-    "rb_kino_rrt": "#b8860b",
-    "leas_p1": "#1f5fd0",
-    **dict.fromkeys(refined_names(), "#c33d2e"),
-}
-OTHER = "#8a3fb5"
 
 
 def draw_figures(figures: Figures) -> list[Picture]:
@@ -63,7 +61,10 @@ def _heights(figures: Figures) -> "Figure":
     floor = float(np.nanmin(ground)) - 0.2
     ax.fill_between(along, floor, np.nan_to_num(ground, nan=floor), color="0.6", label="ground")
     for band in figures.heights:
-        colour, title = _colour(band.method), f"{method_title(band.method)} ({band.guides} paths)"
+        colour, title = (
+            method_colour(band.method),
+            f"{method_title(band.method)} ({band.guides} paths)",
+        )
         low, mean, high = (np.array(each, float) for each in (band.low, band.mean, band.high))
         ax.plot(along, mean, color=colour, label=title)
         ax.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0)
@@ -124,7 +125,7 @@ def _time(ax: "Axes", rows: Sequence[StepRow], kept: int) -> None:
 
 
 def _line(ax: "Axes", method: str, x: list[float], y: list[float], marked: list[bool]) -> None:
-    colour = _colour(method)
+    colour = method_colour(method)
     ax.plot(x, y, color=colour, marker=".", linewidth=1.2, label=method_title(method))
     dots = [(a, b) for a, b, flag in zip(x, y, marked, strict=True) if flag]
     if dots:
@@ -142,7 +143,9 @@ def _course(figures: Figures) -> "Figure":
         ending = "planned" if course.planned else "not planned" if course.reached else "not reached"
         title = f"{method_title(course.method)}, {ending}"
         step = 100.0 * np.array(course.step)
-        bottom.plot(course.x, step, ".-", color=_colour(course.method), linewidth=1, label=title)
+        bottom.plot(
+            course.x, step, ".-", color=method_colour(course.method), linewidth=1, label=title
+        )
     _dress(bottom, "x [m]", "step of the root [cm]")
     bottom.set_ylim(bottom=0.0)
     bottom.legend(fontsize=8, frameon=False)
@@ -155,10 +158,6 @@ def _by_method(rows: Sequence[StepRow]) -> dict[str, list[StepRow]]:
         method: [row for row in ordered if row.method == method]
         for method in dict.fromkeys(row.method for row in rows)
     }
-
-
-def _colour(method: str) -> str:
-    return COLOURS.get(method, OTHER)
 
 
 def _dress(ax: "Axes", x: str, y: str) -> None:

@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.judge import Walk, walk
-from jaxleas.evaluation.stage import Stage
-from jaxleas.evaluation.starts import Grounds, draw_starts
-from jaxleas.evaluation.suites import Cell
-from jaxleas.evaluation.titles import cell_title, method_title
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import (
+    Cell,
+    CellRollOut,
+    Grounds,
+    ReportBasis,
+    cell_title,
+    draw_starts,
+    method_title,
+    roll_out_cell,
+)
+from jaxleas.guide import SteeringMethod
 from jaxleas.reports.pictures import (
     GOAL,
     INVALID,
@@ -56,31 +61,31 @@ class _Shown:
     """One cell, as walked by every method."""
 
     cell: Cell
-    walks: dict[str, Walk]
+    roll_outs: dict[str, CellRollOut]
 
 
 def draw_gallery(
-    env: SteeringEnv, methods: Mapping[str, SteeringMethod], stage: Stage
+    env: SteeringEnv, methods: Mapping[str, SteeringMethod], basis: ReportBasis
 ) -> list[Picture]:
     """Walk one scene of every kind and draw it.
 
     Args:
         env: steering task.
         methods: steering methods; the first is the report's, and a second is drawn next to it.
-        stage: stage with the cells to be drawn.
+        basis: basis with the cells to be drawn.
     """
-    grounds = stage.grounds
+    grounds = basis.grounds
     first = next(iter(methods))
 
     def show(suite: str, name: str, yaw: float, beside: bool = True) -> _Shown:
-        cell = stage.shown[suite, name, yaw]
+        cell = basis.shown[suite, name, yaw]
         starts = draw_starts(env, grounds, cell, seed=0)
-        walks = {
-            title: walk(env, grounds, method, starts, stage.steps[suite])
+        roll_outs = {
+            title: roll_out_cell(env, grounds, method, starts, basis.steps[suite])
             for title, method in methods.items()
             if beside or title == first
         }
-        return _Shown(cell, walks)
+        return _Shown(cell, roll_outs)
 
     kinds = ("rubble", "bridge", "stairs_down", "stairs_up")
     transitions = [show("transitions", name, 180.0) for name in kinds]
@@ -124,14 +129,14 @@ def draw_gallery(
 def _view(
     env: SteeringEnv, grounds: Grounds, shown: _Shown, method: str, examples: int, title: str
 ) -> View:
-    walked = shown.walks[method]
+    walked = shown.roll_outs[method]
     ground = grounds.maps[grounds.index[id(shown.cell.scenarios[0])]]
     chosen = choose_examples(walked, examples, DOTS)
     return View(title, ground, walked, chosen, DOTS, env.config.goal_radius)
 
 
 def _title(shown: _Shown, method: str) -> str:
-    reached = shown.walks[method].reached[:DOTS]
+    reached = shown.roll_outs[method].reached[:DOTS]
     done = f"{int(reached.sum())} of {len(reached)} reached"
     return f"{method_title(method)}, {cell_title(shown.cell.name)}: {done}"
 
@@ -164,7 +169,7 @@ def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) 
     figure = _figure(3.9 * len(shown), 2.75)
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for ax, each in zip(axes, shown, strict=True):
-        valid = ~each.walks[method].invalid[:DOTS]
+        valid = ~each.roll_outs[method].invalid[:DOTS]
         title = f"{cell_title(each.cell.name)}: {int(valid.sum())} of {len(valid)} stayed valid"
         draw_view(ax, _view(env, grounds, each, method, 2, title))
     widest = max(ax.get_xlim()[1] for ax in axes)
@@ -185,7 +190,7 @@ def _profiles(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: s
     figure = _figure(5.6 * len(shown), 3.6)
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for ax, each in zip(axes, shown, strict=True):
-        walked = each.walks[method]
+        walked = each.roll_outs[method]
         far = np.where(walked.reached, -walked.position[:, 0, 0], -np.inf)
         index = int(np.argmax(far))  # of those that arrived, the one that started farthest
         ground = grounds.maps[grounds.index[id(each.cell.scenarios[0])]]

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.evaluation.judge import Walk
-from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.evaluation import CellRollOut
+from jaxleas.geometry import wrap_angle_on_host
 from jaxleas.robots import Robot
-from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import VOID_COLOUR, HeightMap, draw_height_map
 from jaxleas.types import is_ground
 
 if TYPE_CHECKING:
@@ -36,7 +35,7 @@ class View:
     Attributes:
         title: title above the view.
         ground: height map of the terrain.
-        walk: roll-outs on that terrain, to one goal.
+        roll_outs: roll-outs on that terrain, to one goal.
         examples: roll-outs that are drawn as paths.
         dots: number of roll-outs that are drawn as starts.
         radius: radius within which the goal counts as reached [m].
@@ -45,24 +44,24 @@ class View:
 
     title: str
     ground: HeightMap
-    walk: Walk
+    roll_outs: CellRollOut
     examples: Sequence[int]
     dots: int
     radius: float
     planned: Bool[np.ndarray, " N"] | None = None
 
 
-def choose_examples(walk: Walk, count: int, among: int) -> list[int]:
+def choose_examples(roll_outs: CellRollOut, count: int, among: int) -> list[int]:
     """Return roll-outs that show a cell: starts spread out, one of each kind of failure first.
 
     Args:
-        walk: roll-outs of one scene.
+        roll_outs: roll-outs of one scene.
         count: greatest number of roll-outs to return.
         among: number of first roll-outs to choose from.
     """
-    horizontal = walk.position[:among, 0, :2]
-    stopped = (~walk.reached & ~walk.invalid)[:among]
-    kinds = [flag for flag in (walk.invalid[:among], stopped) if flag.any() and not flag.all()]
+    horizontal = roll_outs.position[:among, 0, :2]
+    stopped = (~roll_outs.reached & ~roll_outs.invalid)[:among]
+    kinds = [flag for flag in (roll_outs.invalid[:among], stopped) if flag.any() and not flag.all()]
     chosen = [int(np.flatnonzero(flag)[0]) for flag in kinds][:count]
     if not chosen:
         chosen = [int(np.argmin(horizontal.sum(axis=1)))]
@@ -77,15 +76,15 @@ def draw_view(ax: "Axes", view: View) -> None:
     """Draw a top view: starts coloured by outcome, the goal, example paths and headings."""
     draw_height_map(view.ground, ax=ax, colour_bar=False)
     ax.set_title(view.title, fontsize=10)
-    walk = view.walk
-    shown = np.arange(len(walk.reached)) < view.dots
-    start = walk.position[:, 0, :2]
-    planned = walk.reached if view.planned is None else view.planned
+    roll_outs = view.roll_outs
+    shown = np.arange(len(roll_outs.reached)) < view.dots
+    start = roll_outs.position[:, 0, :2]
+    planned = roll_outs.reached if view.planned is None else view.planned
     outcomes = (
         (planned, REACHED, "#5c4a00", 0.4),
-        (walk.reached & ~planned, UNPLANNED, "#ffffff", 0.3),
-        (~walk.reached & ~walk.invalid, STOPPED, RING, 1.2),
-        (walk.invalid, INVALID, "#ffffff", 0.3),
+        (roll_outs.reached & ~planned, UNPLANNED, "#ffffff", 0.3),
+        (~roll_outs.reached & ~roll_outs.invalid, STOPPED, RING, 1.2),
+        (roll_outs.invalid, INVALID, "#ffffff", 0.3),
     )
     for flag, colour, edge, width in outcomes:
         dots = start[flag & shown]
@@ -93,9 +92,9 @@ def draw_view(ax: "Axes", view: View) -> None:
             dots[:, 0], dots[:, 1], s=20, c=colour, edgecolors=edge, linewidths=width, zorder=3
         )
     for index in view.examples:
-        _draw_path(ax, walk, index)
-    _draw_goals(ax, np.asarray(walk.starts.waypoints)[view.examples[0]], view.radius)
-    _crop(ax, view.ground, np.asarray(walk.starts.waypoints)[view.examples[0]])
+        _draw_path(ax, roll_outs, index)
+    _draw_goals(ax, np.asarray(roll_outs.starts.waypoints)[view.examples[0]], view.radius)
+    _crop(ax, view.ground, np.asarray(roll_outs.starts.waypoints)[view.examples[0]])
     ax.set(xlabel="", ylabel="")
     ax.tick_params(labelsize=7)
 
@@ -110,8 +109,8 @@ def _crop(ax: "Axes", ground: HeightMap, waypoints: Float[np.ndarray, "W 3"]) ->
     ax.set_ylim(y.min() - BORDER, y.max() + BORDER)
 
 
-def _draw_path(ax: "Axes", walk: Walk, index: int) -> None:
-    path, yaw = walk.path(index), walk.yaw[index]
+def _draw_path(ax: "Axes", roll_outs: CellRollOut, index: int) -> None:
+    path, yaw = roll_outs.path(index), roll_outs.yaw[index]
     ax.plot(path[:, 0], path[:, 1], color=PATH, linewidth=1.6, zorder=4)
     at = arrow_indices(path, yaw[: len(path)])
     ax.quiver(
@@ -128,7 +127,7 @@ def _draw_path(ax: "Axes", walk: Walk, index: int) -> None:
         color="black",
         zorder=5,
     )
-    if walk.invalid[index]:
+    if roll_outs.invalid[index]:
         ax.plot(
             path[-1, 0], path[-1, 1], "x", color=GOAL, markersize=7, markeredgewidth=2, zorder=7
         )
@@ -166,7 +165,7 @@ def _draw_goals(ax: "Axes", waypoints: Float[np.ndarray, "W 3"], radius: float) 
 
 
 def draw_profile(
-    ax: "Axes", robot: Robot, ground: HeightMap, walk: Walk, index: int, title: str
+    ax: "Axes", robot: Robot, ground: HeightMap, roll_outs: CellRollOut, index: int, title: str
 ) -> None:
     """Draw the height profile of one path: the ground below it, the root, and the legs' reach.
 
@@ -177,11 +176,11 @@ def draw_profile(
         ax: axes to draw on.
         robot: robot whose legs and trunk are drawn.
         ground: height map of the terrain.
-        walk: roll-outs on the terrain.
+        roll_outs: roll-outs on the terrain.
         index: index of the roll-out to draw.
         title: title above the picture.
     """
-    path = walk.path(index)
+    path = roll_outs.path(index)
     moved = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
     distance = np.concatenate([[0.0], np.cumsum(moved)])
     low, high = reach_below_root(robot)

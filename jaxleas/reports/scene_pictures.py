@@ -8,12 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import Judged, Walker, ask
-from jaxleas.evaluation.height_band import height_band
-from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
-from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import (
+    Cell,
+    Grounds,
+    Judged,
+    Suite,
+    Walker,
+    ask,
+    cell_title,
+    draw_starts,
+    height_band,
+    make_grounds,
+    method_title,
+)
 from jaxleas.files import write_bytes
 from jaxleas.labels import Judge
 from jaxleas.reports.gallery import legend
@@ -90,14 +98,14 @@ def _scene(
     figure = _figure(*size)
     axes = figure.subplots(count if wide else 1, 1 if wide else count, squeeze=False).ravel()
     for ax, (name, each) in zip(axes, judged.items(), strict=True):
-        reached = int(each.walk.reached.sum())
+        reached = int(each.roll_outs.reached.sum())
         title = f"{method_title(name)}: {reached} of {STARTS} reached"
         planned = each.planned if planner is not None else None
         if planned is not None:
             title += f", {int(planned.sum())} planned"
-        examples = choose_examples(each.walk, EXAMPLES, STARTS)
+        examples = choose_examples(each.roll_outs, EXAMPLES, STARTS)
         radius = env.config.goal_radius
-        draw_view(ax, View(title, ground, each.walk, examples, STARTS, radius, planned))
+        draw_view(ax, View(title, ground, each.roll_outs, examples, STARTS, radius, planned))
     figure.suptitle(f"{cell_title(cell.name)}, {_heading(cell)}", fontsize=11)
     legend(figure, planner)
     return figure

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from jaxleas.evaluation.result_file import AreaResult, CellResult, Evaluation
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.evaluation import AreaResult, CellResult, Evaluation, cell_title, method_title
+from jaxleas.guide import LEAS
 from jaxleas.reports.published import published_value
 
-THESIS_METHOD = "leas_p1"
+THESIS_METHOD = LEAS.key
 HEADINGS = (
     "cell",
     "yaw",

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from jaxleas.robots.files import read_robot
 from jaxleas.robots.robot import Robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
+DEFAULT_ROBOT = "talos"
+"""Name of the robot of commands that name none, and of files from before robots were recorded."""
 FOLDER = Path("robots")
 """Folder of the user's own robot files, in the working folder."""
 

@@ -14,6 +14,7 @@ from jax import Array
 from jaxtyping import Bool
 
 from jaxleas.conditions import Pick, everyone
+from jaxleas.xla import take_along_inside
 
 GROUP = 128
 SPARE = 2.0  # room above the mean number of robots due, in standard deviations of that number
@@ -67,12 +68,12 @@ def in_turn(due: Bool[Array, "*batch"], every: int) -> Turn:
 
     def pick(leaf: Array) -> Array:
         leaf = grouped(leaf)
-        chosen = jnp.take_along_axis(leaf, across(robot, leaf), axis=1, mode="promise_in_bounds")
+        chosen = take_along_inside(leaf, across(robot, leaf), axis=1)
         return chosen.reshape(-1, *leaf.shape[2:])
 
     def give_back(leaf: Array) -> Array:
         leaf = leaf.reshape(count // GROUP, room, *leaf.shape[1:])
-        given = jnp.take_along_axis(leaf, across(seat, leaf), axis=1, mode="promise_in_bounds")
+        given = take_along_inside(leaf, across(seat, leaf), axis=1)
         return given.reshape(count, *leaf.shape[2:])
 
     served = due & (place.reshape(count) <= room)

@@ -11,9 +11,7 @@ from jaxtyping import Float, Int, UInt32
 
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import NO_GROUND, InputError, is_ground
-from jaxleas.xla.angles import sine_cosine
-from jaxleas.xla.compute_once import compute_once
-from jaxleas.xla.huge_pages import hold_in_huge_pages
+from jaxleas.xla import compute_once, hold_in_huge_pages, sine_cosine, take_inside
 
 _ROUND = 12582912.0  # 1.5 * 2^23: adding it to a float32 leaves a whole number in the last bits
 _ROUND_BITS = 0x4B400000  # the bits of _ROUND
@@ -53,7 +51,7 @@ class Atlas:
         column, row = cell(0, columns), cell(1, rows)
         index = (map_index[..., None] * rows + row) * columns + column
         # One flat gather; the index is in range by construction, so XLA need not check it.
-        return self.heights.reshape(maps * rows * columns).at[index].get(mode="promise_in_bounds")
+        return take_inside(self.heights.reshape(maps * rows * columns), index)
 
     def heights_around(
         self,
@@ -93,11 +91,7 @@ class Atlas:
             column = _nearest(x + cosine * ahead - sine * left, columns)
             row = _nearest(y + sine * ahead + cosine * left, rows)
             index = first + row * jnp.uint32(columns) + column
-            found = (
-                heights.reshape(-1)
-                .at[index]
-                .get(mode="promise_in_bounds", wrap_negative_indices=False)
-            )
+            found = take_inside(heights.reshape(-1), index)
             return then(found - z, *robot[6:])
 
         robot = (cell[..., 0], cell[..., 1], position[..., 2], cosine, sine, first)

@@ -10,12 +10,13 @@ from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap, write_height_map
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.mesh_scene import mesh_to_scene
-from jaxleas.terrain.meshes import SUFFIXES
-from jaxleas.terrain.reading import READING, Reading
+from jaxleas.terrain.mesh_scene import has_polygons, load_scene
+from jaxleas.terrain.polygons import polygon_area_vector
+from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicable
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
-from jaxleas.types.errors import InputError
+from jaxleas.terrain.shaping import holes
+from jaxleas.types import InputError
 
 
 def show(
@@ -27,7 +28,7 @@ def show(
     """Draw a terrain file from above, and print its size.
 
     Args:
-        file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        file: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         out: file of the picture; by default NAME_view.png in the current folder.
         reading: what the file does not state itself.
     """
@@ -47,15 +48,20 @@ def convert(
     """Import a mesh, an image or a scene as a height map (.npz), or a mesh as a scene (.json).
 
     Args:
-        file: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        file: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         out: file of the height map, .npz; for a mesh also .json, the scene of its polygons.
         reading: what the file does not state itself.
     """
-    if file.suffix.lower() in SUFFIXES and out.suffix == ".json":
-        scene = mesh_to_scene(file, reading.up, reading.scale)
+    if has_polygons(file) and out.suffix == ".json":
+        _require_no_map(file, reading)
+        scene = load_scene(file, reading)
         write_scene(out, scene)
         surfaces, obstacles = len(scene.surfaces), len(scene.obstacles)
-        print(f"{file}: {surfaces} surfaces, {obstacles} obstacles\nwritten to {out}")
+        area = sum(np.linalg.norm(polygon_area_vector(each)) for each in scene.walkable.values())
+        print(
+            f"{file}: {surfaces} surfaces, {area:.2f} m2 for feet, {obstacles} obstacles\n"
+            f"written to {out}"
+        )
         return out
     _require_suffix(out, ".npz")
     height_map = import_terrain(file, reading)
@@ -111,15 +117,27 @@ def scenario(name: str, *, out: Path, seed: int = 0) -> Path:
     return out
 
 
+def _require_no_map(file: Path, reading: Reading) -> None:
+    """Refuse what is done with a map alone, when a scene is to be written."""
+    done = Reading(resolution=reading.resolution, fill=reading.fill, smooth=reading.smooth)
+    require_applicable(file, done, (*SHAPING, "up", "scale"), "which is made a scene")
+
+
 def describe(height_map: HeightMap) -> str:
-    """Return a map's size, cells, heights and void in one line."""
+    """Return a map's size, cells, heights, void and holes in one line."""
     x_min, x_max, y_min, y_max = height_map.extent
     rows, columns = height_map.shape
     low, high = np.nanmin(height_map.heights), np.nanmax(height_map.heights)
+    region, inside = holes(height_map.heights)
+    sizes = (
+        np.bincount(region.reshape(-1), minlength=len(inside))[inside] * height_map.resolution**2
+    )
+    found = f"{len(sizes)} holes" + (f" of up to {sizes.max():.2g} m2" if len(sizes) else "")
     return (
         f"x {x_min:.2f} to {x_max:.2f} m, y {y_min:.2f} to {y_max:.2f} m, "
         f"{columns} x {rows} cells of {height_map.resolution:g} m, "
-        f"heights {low:.2f} to {high:.2f} m, {100.0 * height_map.void_fraction:.1f} % void"
+        f"heights {low:.2f} to {high:.2f} m, {100.0 * height_map.void_fraction:.1f} % void, "
+        f"{found}"
     )
 
 

@@ -1,5 +1,6 @@
 """Height maps: one height per cell, NaN where there is no ground."""
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +13,11 @@ from jaxleas.types import InputError, is_ground
 MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 0.5
 """Accepted cell sizes [m]: a foot needs no finer cells, and coarser ones miss bridges and steps."""
 MAX_CELLS = 64_000_000
-MAX_BYTES = 4 * MAX_CELLS + 2**20
+MAX_BYTES = 8 * MAX_CELLS + 2**20
 VERSION = 1
+NO_DATA = (-9999.0, -32767.0, -32768.0)
+"""Numbers that surveys write where they know no height."""
+_LOG = logging.getLogger("jaxleas")
 MAX_HEIGHT = 10_000.0
 """Height above which the units are probably wrong [m]."""
 
@@ -60,7 +64,7 @@ class HeightMap:
 
 
 def read_height_map(path: str | Path) -> HeightMap:
-    """Read a height map from .npz: `heights` float32, `resolution` [m], `origin` x, y [m].
+    """Read a height map from .npz: `heights`, `resolution` [m], `origin` x, y [m], any numbers.
 
     Raises:
         InputError: an array is missing or unusable; the message says which, and what would do.
@@ -68,10 +72,8 @@ def read_height_map(path: str | Path) -> HeightMap:
     arrays = read_npz(path, required=("heights", "resolution", "origin"), max_bytes=MAX_BYTES)
     require_version_array(arrays, VERSION, path)
     heights, resolution, origin = arrays["heights"], arrays["resolution"], arrays["origin"]
-    if heights.dtype.kind != "f" or heights.dtype.itemsize != 4:
-        raise InputError(
-            f"{path}: heights are {heights.dtype}, not float32; convert them to float32 metres"
-        )
+    if heights.dtype.kind not in "fiu":
+        raise InputError(f"{path}: heights are {heights.dtype}; they must be numbers [m]")
     if heights.ndim != 2 or min(heights.shape) < 2:
         raise InputError(
             f"{path}: heights have shape {heights.shape}; at least 2 x 2, [rows = y, columns = x]"
@@ -80,7 +82,7 @@ def read_height_map(path: str | Path) -> HeightMap:
         raise InputError(f"{path}: resolution must be one number [m]")
     if origin.shape != (2,) or origin.dtype.kind not in "fiu" or not np.isfinite(origin).all():
         raise InputError(f"{path}: origin must be two finite numbers, x and y of cell (0, 0) [m]")
-    require_usable(heights, float(resolution.reshape(())), path)
+    require_usable(heights, float(resolution.reshape(())), path)  # also beyond float32
     return HeightMap(
         np.ascontiguousarray(heights, dtype=np.float32),
         float(resolution.reshape(())),
@@ -113,6 +115,19 @@ def require_usable(
     highest = float(np.nanmax(np.abs(heights)))
     if highest > MAX_HEIGHT:
         raise InputError(f"{where}: a height of {highest:.6g} m is no terrain; are these metres?")
+
+
+def without_no_data(
+    path: str | Path, heights: Float[np.ndarray, "*cells"]
+) -> Float[np.ndarray, "*cells"]:
+    """Return heights with NaN for the numbers that stand for no data in surveys; it is said."""
+    nothing = np.isin(heights, NO_DATA)
+    if nothing.any():
+        _LOG.warning(
+            "%s: %d cells of %g mean no data: no ground there",
+            *(path, nothing.sum(), heights[nothing][0]),
+        )
+    return np.where(nothing, np.nan, heights)
 
 
 def require_resolution(resolution: float, where: str | Path) -> None:

@@ -1,11 +1,18 @@
 """Meshes to scenes: coplanar neighbours merged into convex polygons (Hertel and Mehlhorn)."""
 
+import logging
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.terrain.agreement import compare, require_agreement
+from jaxleas.terrain.bodies import orient, welded
+from jaxleas.terrain.cropping import cropped_scene
+from jaxleas.terrain.map_formats import MAPS
 from jaxleas.terrain.meshes import SUFFIXES, read_triangles
+from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.polygons import (
     CONVEXITY_TOLERANCE,
     MIN_AREA,
@@ -16,31 +23,60 @@ from jaxleas.terrain.polygons import (
     planarity_deviation,
     polygon_area_vector,
 )
-from jaxleas.terrain.reading import Up
+from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.scene import Scene, read_scene
-from jaxleas.types.errors import InputError
+from jaxleas.terrain.shaping import require_rectangle
+from jaxleas.types import InputError
 
-WELD = 1e-5
-"""Distance below which vertices are merged [m]."""
+_LOG = logging.getLogger("jaxleas")
 COPLANAR = 1e-6
 """Neighbours are coplanar if 1 - cosine of the angle between their normals is below this."""
 
 
-def mesh_to_scene(path: str | Path, up: Up = "z", scale: float = 1.0) -> Scene:
+def mesh_to_scene(
+    path: str | Path, up: Up | None = None, scale: float = 1.0, reading: Reading = READING
+) -> Scene:
     """Return a mesh as a scene of convex polygons; faces that point down are left out.
 
-    Neighbours whose union is planar and convex are merged greedily into one polygon; the others
-    stay triangles.
+    Closed bodies are wound outwards first. Neighbours whose union is planar and convex are merged
+    greedily into one polygon; the others stay triangles.
+
+    Args:
+        path: path of a mesh.
+        up: axis of the mesh that points up; None: that of `reading`.
+        scale: metres per unit of the file, if `reading` says nothing of it.
+        reading: what becomes the origin, and what is kept.
 
     Raises:
-        InputError: the file is unreadable, is not a terrain, or has no face to stand on.
+        InputError: the file is unreadable, is not a terrain, has no face to stand on, or its
+            scene and its height map contradict each other.
     """
-    corners = read_triangles(path, up, scale).reshape(-1, 3)
-    _, first, index = np.unique(
-        np.round(corners / WELD).astype(np.int64), axis=0, return_index=True, return_inverse=True
-    )
+    if up is not None or scale != 1.0:
+        reading = replace(reading, up=up, scale=scale)
+    triangles = read_triangles(path, reading)
+    points, faces = welded(triangles)
+    scene = _scene(points, faces)
+    found = compare(triangles, scene)
+    oriented = orient(points, faces)
+    if oriented.turned:
+        turned = _scene(points, oriented.faces)
+        after = compare(triangles, turned)
+        if after.mean_gap < found.mean_gap:  # bodies that pierce each other can mislead
+            scene, found = turned, after
+            _LOG.warning(
+                "%s: %d faces of %d bodies were wound inside out and are turned",
+                *(path, oriented.turned, oriented.bodies),
+            )
+    if not scene.surfaces:
+        raise InputError(f"{path} has no face that looks up: are its triangles wound inside out?")
+    require_agreement(path, found)
+    return scene if reading.crop is None else cropped_scene(scene, reading.crop, str(path))
+
+
+def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"]) -> Scene:
+    """Return the faces that look up or sideways, merged: surfaces to stand on, and obstacles."""
     surfaces, obstacles = {}, {}
-    for vertices in _merge(corners[first], index.reshape(-1, 3)):
+    for vertices in _merge(points, faces):
         area = polygon_area_vector(vertices)
         slope = area[2] / max(float(np.linalg.norm(area)), 1e-12)
         if np.linalg.norm(area) < MIN_AREA or slope < -VERTICAL_SLOPE:
@@ -49,36 +85,59 @@ def mesh_to_scene(path: str | Path, up: Up = "z", scale: float = 1.0) -> Scene:
             surfaces[f"surface_{len(surfaces)}"] = vertices
         else:
             obstacles[f"obstacle_{len(obstacles)}"] = vertices
-    if not surfaces:
-        raise InputError(f"{path} has no face that looks up: are its triangles wound inside out?")
     return Scene(surfaces, obstacles)
 
 
-def load_scene(path: str | Path) -> Scene:
-    """Return a terrain as polygons: a scene, or a mesh in metres with z up.
+def load_scene(path: str | Path, reading: Reading = READING) -> Scene:
+    """Return a terrain as polygons: a scene, or a mesh.
 
     Args:
-        path: path of a .json scene, .stl or .obj mesh.
+        path: path of a .json scene, or of a mesh.
+        reading: what the file does not state itself, and what is done with it.
 
     Raises:
         InputError: the file has no polygons, or cannot be used.
     """
     suffix = Path(path).suffix.lower()
     if suffix in SUFFIXES:
-        return mesh_to_scene(path)
-    if suffix in (".npz", ".png"):
+        return mesh_to_scene(path, reading=reading)
+    if suffix in MAPS:
         raise InputError(
             f"{path} is a map of heights; contacts need polygons: a scene (.json) or a mesh"
             f" ({', '.join(SUFFIXES)})"
         )
-    return read_scene(path)
+    require_applicable(path, reading, MAPPING, "a scene")
+    return read_placed_scene(path, reading)
+
+
+def has_polygons(path: str | Path) -> bool:
+    """Return whether a terrain file holds polygons rather than heights, by its suffix."""
+    return Path(path).suffix.lower() in (".json", *SUFFIXES)
+
+
+def read_placed_scene(path: str | Path, reading: Reading) -> Scene:
+    """Return the scene of a .json file, moved and cropped as `reading` says."""
+    scene = read_scene(path)
+    corners = np.concatenate(scene.polygons)
+    low = corners.min(axis=0)
+    shift = shift_of(path, reading.origin, (float(low[0]), float(low[1])))
+    if shift.any():
+        scene = Scene(
+            {name: each - shift for name, each in scene.surfaces.items()},
+            {name: each - shift for name, each in scene.obstacles.items()},
+            {name: each - shift[: each.shape[1]] for name, each in scene.areas.items()},
+            scene.touch,
+        )
+    require_near(path, corners - shift)
+    if reading.crop is None:
+        return scene
+    return cropped_scene(scene, require_rectangle(reading.crop), str(path))
 
 
 def _merge(
     points: Float[np.ndarray, "P 3"], triangles: Int[np.ndarray, "N 3"]
 ) -> list[Float[np.ndarray, "V 3"]]:
     """Return convex polygons: both sides of each shared edge are merged if the union is convex."""
-    triangles = np.array([face for face in triangles if len(set(face)) == 3]).reshape(-1, 3)
     loops: list[list[int] | None] = [face.tolist() for face in triangles]
     normals = np.array([_normal(points[face]) for face in triangles])
     owner = list(range(len(loops)))

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, PositiveFloat, Tag
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.files import digest_of, require_digest
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.reading import Reading, Up
-from jaxleas.types.errors import InputError
+from jaxleas.terrain.reading import Reading, Rectangle, Up
+from jaxleas.types import InputError
 
 KEY = "terrain.files"  # name of the configuration field, for messages
 
@@ -21,18 +21,29 @@ class TerrainFile(Strict):
     """A terrain file, with the values that the file does not state itself."""
 
     file: Annotated[str, Field(min_length=1)]
-    """.npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png; found from the working
-    folder"""
-    up: Up = "z"
-    """axis of a mesh that points up"""
+    """height map, scene, mesh, image, table or bag; found from the working folder"""
+    up: Up | None = None
+    """axis of a mesh that points up; z by default, y of a .glb"""
     scale: PositiveFloat = 1.0
-    """size of a mesh's unit [m]"""
+    """metres per unit of a mesh or of the heights in a table"""
     z_min: float | None = None
-    """height of black in a .png [m]"""
+    """height of black in an image [m]"""
     z_max: float | None = None
-    """height of white in a .png [m]"""
+    """height of white in an image [m]"""
     zero_is_void: bool = False
-    """whether black in a .png means that there is no ground"""
+    """whether black in an image means that there is no ground"""
+    origin: str | None = None
+    """point of the file that becomes x = y = 0, as X,Y or X,Y,Z [m], or auto"""
+    crop: Rectangle | None = None
+    """x_min, x_max, y_min, y_max of the part that is kept [m]"""
+    fill: PositiveFloat | None = None
+    """largest width of holes that are filled from their rims [m]"""
+    smooth: PositiveFloat | None = None
+    """standard deviation of the Gaussian that heights are averaged with [m]"""
+    topic: str | None = None
+    """topic of the map in a bag"""
+    layer: str | None = None
+    """layer of the map in a bag; elevation by default"""
     sha256: str | None = None
     """digest of the file, recorded when a run begins"""
 

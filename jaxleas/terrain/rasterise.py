@@ -7,9 +7,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
-from jaxleas.terrain.polygons import VERTICAL_SLOPE
+from jaxleas.terrain.polygons import VERTICAL_SLOPE, upwardness
 from jaxleas.terrain.scene import Scene
-from jaxleas.types.errors import InputError
+from jaxleas.terrain.sheets import raise_sheets
+from jaxleas.types import InputError
 
 DEFAULT_RESOLUTION = 0.04
 CLOSING = 0.01
@@ -23,10 +24,11 @@ BATCH_CELLS, BATCH_POLYGONS = 1_000_000, 200_000
 def rasterise(
     scene: Scene, resolution: float = DEFAULT_RESOLUTION, margin: float = 0.5
 ) -> HeightMap:
-    """Return the height map of the surfaces that feet may touch and of the obstacles in a scene.
+    """Return the height map of the surfaces that feet may touch, of walls and of obstacles.
 
-    Vertical faces, and surfaces for palms alone, are skipped. Cell edges lie at multiples of the
-    resolution.
+    Of a vertical face that the cells around do not hold, the upper edge counts. Skipped are
+    ceilings, and surfaces that `touch` gives to palms alone unless they are walls. Cell edges lie
+    at multiples of the resolution.
 
     Args:
         scene: scene to rasterise.
@@ -36,8 +38,23 @@ def rasterise(
     Raises:
         InputError: the resolution is absurd, or the map would be too large.
     """
-    walkable = [*scene.walkable.values(), *scene.obstacles.values()]
-    return rasterise_polygons(walkable, resolution, margin, grow=CLOSING)
+    return rasterise_polygons(blocking(scene), resolution, margin, grow=CLOSING)
+
+
+def blocking(scene: Scene) -> list[Float[np.ndarray, "V 3"]]:
+    """Return the polygons of a scene of which its height map is made."""
+    walls = [
+        vertices
+        for name, vertices in scene.surfaces.items()
+        if name not in scene.walkable and _is_wall(scene, name)
+    ]
+    return [*scene.walkable.values(), *walls, *scene.obstacles.values()]
+
+
+def _is_wall(scene: Scene, name: str) -> bool:
+    """Tell whether a surface for palms stands in the way: vertical, or leaning and unnamed."""
+    upward = upwardness(scene.surfaces[name])
+    return abs(upward) <= VERTICAL_SLOPE or (upward > 0.0 and name not in scene.touch)
 
 
 def rasterise_polygons(
@@ -49,10 +66,11 @@ def rasterise_polygons(
 ) -> HeightMap:
     """Return the height map of convex polygons, each side moved outwards by `grow` [m].
 
-    A sharp corner grows no further than that beyond the polygon's bounding box.
+    A sharp corner grows no further than that beyond the polygon's bounding box. Of vertical
+    polygons that the map does not hold otherwise, the upper edge counts.
     """
     require_resolution(resolution, where)
-    padded = _pad(polygons)
+    padded = padded_polygons(polygons)
     low = np.floor((padded[..., :2].min(axis=(0, 1)) - margin) / resolution)
     high = np.ceil((padded[..., :2].max(axis=(0, 1)) + margin) / resolution)
     columns, rows = (high - low).tolist()
@@ -63,14 +81,31 @@ def rasterise_polygons(
         )
     origin = (low + 0.5) * resolution
     heights = np.full(int(rows) * int(columns), -np.inf, dtype=np.float32)
-    for start in range(0, len(padded), BATCH_POLYGONS):
-        planes = _planes(padded[start : start + BATCH_POLYGONS], origin, resolution, grow)
-        for size, chosen, corner in _batches(planes, int(rows), int(columns)):
-            _paint(heights, int(columns), planes, size, chosen, corner)
+    shape, place = (int(rows), int(columns)), (float(origin[0]), float(origin[1]))
+    frame = HeightMap(heights.reshape(shape), resolution, place)
+    for cell, z in covered_cells(padded, frame, grow):
+        np.maximum.at(heights, cell, z.astype(np.float32))
+    raise_sheets(frame.heights, padded, origin, resolution)
     heights[np.isneginf(heights)] = np.nan
-    return HeightMap(
-        heights.reshape(int(rows), int(columns)), resolution, (float(origin[0]), float(origin[1]))
-    )
+    return frame
+
+
+def covered_cells(
+    polygons: Float[np.ndarray, "N V 3"], frame: HeightMap, grow: float = 0.0
+) -> Iterator[tuple[Int[np.ndarray, " K"], Float[np.ndarray, " K"]]]:
+    """Yield flat indices of cells whose middles lie under a polygon, and its heights there [m].
+
+    Args:
+        polygons: convex polygons, vertical ones among them are left out [m].
+        frame: a map with the cells; its heights do not matter.
+        grow: length by which the sides are moved outwards [m].
+    """
+    rows, columns = frame.shape
+    for start in range(0, len(polygons), BATCH_POLYGONS):
+        some = polygons[start : start + BATCH_POLYGONS]
+        planes = _planes(some, np.array(frame.origin), frame.resolution, grow)
+        for size, chosen, corner in _batches(planes, rows, columns):
+            yield _under(rows, columns, planes, size, chosen, corner)
 
 
 class _Planes(NamedTuple):
@@ -84,7 +119,9 @@ class _Planes(NamedTuple):
     last: Int[np.ndarray, "N 2"]
 
 
-def _pad(polygons: Sequence[np.ndarray] | np.ndarray) -> Float[np.ndarray, "N V 3"]:
+def padded_polygons(
+    polygons: Sequence[np.ndarray] | np.ndarray,
+) -> Float[np.ndarray, "N V 3"]:
     """Repeat last vertices until all polygons have as many; an edge of length 0 has no effect."""
     if isinstance(polygons, np.ndarray):
         return polygons.astype(np.float64, copy=False)
@@ -148,20 +185,19 @@ def _batches(
             yield int(side), polygon[chosen], corner[chosen]
 
 
-def _paint(
-    heights: np.ndarray,
+def _under(
+    rows: int,
     columns: int,
     planes: _Planes,
     side: int,
     chosen: Int[np.ndarray, " B"],
     corner: Int[np.ndarray, "B 2"],
-) -> None:
-    """Raise the heights of the cells in these blocks to the polygons that cover them."""
+) -> tuple[Int[np.ndarray, " K"], Float[np.ndarray, " K"]]:
+    """Return the cells in these blocks that the polygons cover, and the heights there."""
     step = np.arange(side)
     x = (corner[:, 0, None] + step)[:, None, :]
     y = (corner[:, 1, None] + step)[:, :, None]
     last = planes.last[chosen]
-    rows = len(heights) // columns
     inside = (x <= np.minimum(last[:, 0], columns - 1)[:, None, None]) & (
         y <= np.minimum(last[:, 1], rows - 1)[:, None, None]
     )
@@ -170,4 +206,4 @@ def _paint(
         inside &= normal[:, 0] * x + normal[:, 1] * y <= planes.offset[chosen, edge, None, None]
     slope = planes.slope[chosen, :, None, None]
     z = slope[:, 0] * x + slope[:, 1] * y + planes.height[chosen, None, None]
-    np.maximum.at(heights, (y * columns + x)[inside], z[inside].astype(np.float32))
+    return (y * columns + x)[inside], z[inside]

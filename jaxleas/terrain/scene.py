@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
+from jaxleas.terrain.mending import counter_clockwise, flattened, turned_up, without_repeats
 from jaxleas.terrain.polygons import (
     STANDING_SLOPE,
     VERTICAL_SLOPE,
@@ -19,7 +20,7 @@ from jaxleas.terrain.polygons import (
     require_convex_polygon,
     upwardness,
 )
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 VERSION = 1
 MAX_CORNERS = 10_000_000
@@ -81,6 +82,9 @@ class Scene:
 def read_scene(path: str | Path) -> Scene:
     """Read a scene from JSON: `surfaces`, optionally `obstacles`, `areas`, `touch` and `version`.
 
+    Rings closed by their first vertex, clockwise floors and obstacles, and vertices a few
+    millimetres off their plane are mended; the latter two are said.
+
     Raises:
         InputError: the file cannot be used, or one polygon in it, which the message names.
     """
@@ -89,11 +93,15 @@ def read_scene(path: str | Path) -> Scene:
         raise InputError(f"{path} is not a scene: it needs an object with the key 'surfaces'")
     refuse_misspelt_keys(path, content, KNOWN_KEYS)
     require_version(content, VERSION, path)
+    touch = _touch(path, content)
+    surfaces = _polygons(path, content, "surfaces", dimensions=(3,))
+    obstacles = _polygons(path, content, "obstacles", dimensions=(3,))
+    areas = _polygons(path, content, "areas", dimensions=(2, 3))
     scene = Scene(
-        surfaces=_polygons(path, content, "surfaces", dimensions=(3,)),
-        obstacles=_polygons(path, content, "obstacles", dimensions=(3,)),
-        areas=_polygons(path, content, "areas", dimensions=(2, 3)),
-        touch=_touch(path, content),
+        surfaces=turned_up(path, surfaces, touch),
+        obstacles=counter_clockwise(path, "obstacle", obstacles),
+        areas=counter_clockwise(path, "area", areas),
+        touch=touch,
     )
     if not scene.surfaces:
         raise InputError(f"{path} has no surfaces: nothing can stand anywhere")
@@ -193,4 +201,6 @@ def _polygon(
         raise InputError(problem)
     if not all(abs(number) < 1e6 for number in numbers):
         raise InputError(f"{path}: {key} '{name}' has a coordinate beyond 1000 km")
-    return np.array(value, dtype=np.float64).reshape(len(value), -1 if value else 3)
+    vertices = np.array(value, dtype=np.float64).reshape(len(value), -1 if value else 3)
+    vertices = without_repeats(vertices)
+    return flattened(path, name, vertices) if vertices.shape[1] == 3 else vertices

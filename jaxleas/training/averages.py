@@ -1,5 +1,6 @@
 """Averages over the robots of all devices that share a training."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import jax
@@ -30,17 +31,25 @@ class Average:
             mean, variance = whole, within + jnp.maximum(square - whole * whole, 0.0)
         return (values - mean) / (jnp.sqrt(variance) + 1e-8)
 
-    def metrics(self, metrics: dict[str, Array]) -> dict[str, Array]:
-        """Return metrics of all robots: maxima and minima of those named max or min, else means."""
+    def metrics(
+        self, metrics: dict[str, Array], largest: Collection[str], smallest: Collection[str]
+    ) -> dict[str, Array]:
+        """Return the metrics of all robots.
+
+        Args:
+            metrics: metrics of this device's robots, by name.
+            largest: names of those of which the largest counts.
+            smallest: names of those of which the smallest counts; all others are averaged.
+        """
         if self.axis is None:
             return metrics
         names = sorted(metrics)
         means = self.mean(jnp.stack([metrics[name] for name in names]))
         whole = dict(zip(names, means, strict=True))
         for name in names:
-            if "_max_" in name:
+            if name in largest:
                 whole[name] = jax.lax.pmax(metrics[name], self.axis)
-            if "_min_" in name:
+            if name in smallest:
                 whole[name] = jax.lax.pmin(metrics[name], self.axis)
         return whole
 

@@ -66,9 +66,7 @@ class Devices:
             return robots
         return jax.lax.with_sharding_constraint(robots, self.divided)
 
-    def share(
-        self, function: Callable[..., Any], robot_axes: Sequence[int | None]
-    ) -> Callable[..., Any]:
+    def share(self, function: Callable[..., Any], robot_axes: Sequence[Any]) -> Callable[..., Any]:
         """Return a function that every device computes for its own robots.
 
         Left to itself, the compiler gathers each minibatch on every device and sums each array of
@@ -76,12 +74,13 @@ class Devices:
 
         Args:
             function: function that returns the same on each device.
-            robot_axes: for each argument, the axis along which its arrays have one entry per robot
-                or group of robots; None: every device has the whole argument.
+            robot_axes: for each argument, or each part of it, the axis along which its arrays have
+                one entry per robot or group of robots; None: every device has the whole.
         """
-        specs = tuple(
-            PartitionSpec() if axis is None else PartitionSpec(*(None,) * axis, AXIS)
-            for axis in robot_axes
+        specs = jax.tree.map(
+            lambda axis: PartitionSpec() if axis is None else PartitionSpec(*(None,) * axis, AXIS),
+            tuple(robot_axes),
+            is_leaf=lambda axis: axis is None,
         )
         return jax.shard_map(
             function, mesh=self.mesh, in_specs=specs, out_specs=PartitionSpec(), check_vma=False

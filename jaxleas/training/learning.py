@@ -2,26 +2,26 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import optax
+from flax import struct
 from jax import Array
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.heads import Head
-from jaxleas.envs.signature import Signature
-from jaxleas.training.adam import descend
+from jaxleas.envs import Head, Signature
 from jaxleas.training.averages import Average
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.devices import AXIS, Devices
-from jaxleas.training.loss import Experience, ppo_loss
+from jaxleas.training.loss import LARGEST, SMALLEST, Experience, Minibatch, ppo_loss
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, learning_rate
-from jaxleas.xla.compute_once import compute_once
+from jaxleas.xla import compute_once, descend, take_inside
 
 
 def make_learn(
@@ -56,24 +56,18 @@ def make_learn(
         rate = learning_rate(ppo, numbers)
         average = Average(AXIS if share else None)
 
-        def descend_all(params, moments, normaliser, batch, last, order, flip, noise):
-            images, last = mirror_images(signature, batch, last, mirror)
+        def descend_all(params, moments, normaliser, walked, draws):
+            images, last = mirror_images(signature, *walked, mirror=mirror)
             images = replace(images, observation=seen(images.observation, normaliser))
             last = seen(last, normaliser)
-            first = jnp.arange(order.shape[1]) * ppo.minibatches
+            first = jnp.arange(draws.order.shape[1]) * ppo.minibatches
 
-            def minibatch_step(carry, inputs):
+            def minibatch_step(carry, drawn):
                 params, moments = carry
-                chosen, flip, noise = inputs
-                minibatch, seen_last = take_robots(images, last, first + chosen, flip)
+                steps, seen_last = take_robots(images, last, first + drawn.order, drawn.flip)
+                minibatch = Minibatch(steps, seen_last[0], drawn.noise)
                 gradient, metrics = jax.grad(ppo_loss, has_aux=True)(
-                    params,
-                    minibatch,
-                    seen_last[0],
-                    noise,
-                    numbers,
-                    networks,
-                    average,
+                    params, minibatch, numbers, networks, average
                 )
                 vector, as_params = ravel_pytree(gradient)
                 change, moments, metrics["gradient_norm"] = descend(
@@ -81,23 +75,15 @@ def make_learn(
                 )
                 return (optax.apply_updates(params, as_params(change)), moments), metrics
 
-            (params, moments), metrics = jax.lax.scan(
-                minibatch_step, (params, moments), (order, flip, noise)
-            )
-            return params, moments, average.metrics(metrics)
+            (params, moments), metrics = jax.lax.scan(minibatch_step, (params, moments), draws)
+            return params, moments, average.metrics(metrics, LARGEST, SMALLEST)
 
-        order, flip, noise = draw_minibatches(ppo, signature.heads, mirror, key)
-        robot_axes = (None, None, None, 1, 0, 1, 1, 2)
+        draws = draw_minibatches(ppo, signature.heads, mirror, key)
+        along: Any = {"order": 1, "flip": 1, "noise": 2}
+        robot_axes = (None, None, None, (1, 0), Draws(**along))
         together = share(descend_all, robot_axes) if share else descend_all
         params, moments, metrics = together(
-            state.params,
-            state.optimiser,
-            normaliser,
-            batch,
-            last_observation,
-            order,
-            flip,
-            noise,
+            state.params, state.optimiser, normaliser, (batch, last_observation), draws
         )
         averages = {f"learn/{name}": jnp.mean(value) for name, value in metrics.items()}
         return params, moments, averages
@@ -105,9 +91,22 @@ def make_learn(
     return learn
 
 
-def draw_minibatches(
-    ppo: PpoConfig, heads: tuple[Head, ...], mirror: bool, key: Array
-) -> tuple[Int[Array, "steps some"], Bool[Array, "steps some"], tuple[Array, ...]]:
+@struct.dataclass
+class Draws:
+    """All chance of an optimisation, one row per minibatch.
+
+    Attributes:
+        order: place of each robot in its group.
+        flip: whether it is mirrored.
+        noise: standard normal numbers for each head.
+    """
+
+    order: Int[Array, "steps some"]
+    flip: Bool[Array, "steps some"]
+    noise: tuple[Float[Array, "steps time some entropy_noise"], ...]
+
+
+def draw_minibatches(ppo: PpoConfig, heads: tuple[Head, ...], mirror: bool, key: Array) -> Draws:
     """Draw which robots make up each minibatch, which of them are mirrored, and normal noise.
 
     A minibatch has one robot of each group of `ppo.minibatches` neighbours, so that devices which
@@ -119,10 +118,6 @@ def draw_minibatches(
         heads: heads of the action, whose entropies are estimated.
         mirror: whether half of the robots are mirrored.
         key: randomness for all of it, consumed here.
-
-    Returns:
-        Each robot's place in its group, for all minibatches one after another; which are mirrored;
-        and for each head the noise [steps, time, some, entropy_noise].
     """
     groups = ppo.environments // ppo.minibatches
     order_key, flip_key, noise_key = jax.random.split(key, 3)
@@ -134,7 +129,7 @@ def draw_minibatches(
         jax.random.normal(each, (len(order), ppo.unroll, groups, head.entropy_noise))
         for head, each in zip(heads, keys, strict=True)
     )
-    return order, flip, noise
+    return Draws(order, flip, noise)
 
 
 def mirror_images(
@@ -210,7 +205,7 @@ def take_robots(
         time, count, robots, *rest = leaf.shape
         flat = leaf.reshape(time * count * robots, *rest)
         begin = jnp.arange(time, dtype=jnp.int32)[:, None] * (count * robots)
-        return flat.at[begin + rows].get(mode="promise_in_bounds")
+        return take_inside(flat, begin + rows)
 
     # Observations separately: the first layers' products need them both as they are and transposed.
     seen = compute_once(take, images.observation)

@@ -8,16 +8,17 @@ from dataclasses import dataclass
 import jax
 import numpy as np
 
-from jaxleas.configuration.own_code import methods_of
-from jaxleas.configuration.registry import is_own
-from jaxleas.envs.environment import Task
-from jaxleas.runs.background import Background
-from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
-from jaxleas.runs.folder import RunFolder
-from jaxleas.runs.interruption import Interruption
-from jaxleas.runs.metrics import MetricsLog
-from jaxleas.runs.progress import Progress
-from jaxleas.runs.watching import require_watchers
+from jaxleas.configuration import is_own, methods_of
+from jaxleas.runs import (
+    Background,
+    Checkpoints,
+    Interruption,
+    MetricsLog,
+    NoCheckpointError,
+    Progress,
+    RunFolder,
+    require_watchers,
+)
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import Policy, read_policy, write_policy
@@ -46,7 +47,6 @@ def train(
     config: RunConfig,
     run: RunFolder,
     *,
-    task: Task | None = None,
     devices: Devices | None = None,
     learned: Learned | None = None,
     on_examined: Callable[[], None] = lambda: None,
@@ -60,7 +60,6 @@ def train(
     Args:
         config: configuration of the run.
         run: folder held for writing.
-        task: task that is learned, in place of the one that the configuration names.
         devices: devices that share the training; by default the first.
         learned: networks to begin with, in place of fresh ones; a resumed run continues its own.
         on_examined: function that is called when an examination's rows are in the run folder and
@@ -78,21 +77,30 @@ def train(
             the protocol, or raises an exception.
     """
     require_watchers(config.watch)  # before minutes go into compiling
-    task = task or make_task(config, allow)
+    task = make_task(config, allow)
     rehearse(config, task)
-    with (
-        methods_of(task, f"the task {config.env.task}")
-        if is_own(config.env.task)
-        else nullcontext()
-    ):
-        _train(Trainer(config, task, devices or one_device()), run, learned, on_examined)
-    return read_policy(run.path / POLICY_FILE, of=config.env)
+    own = is_own(config.env.task)
+    with methods_of(task, f"the task {config.env.task}") if own else nullcontext():
+        trainer = Trainer(config, task, devices or one_device())
+        return train_with(trainer, run, learned, on_examined)
 
 
-def _train(
-    trainer: Trainer, run: RunFolder, learned: Learned | None, on_examined: Callable[[], None]
-) -> None:
+def train_with(
+    trainer: Trainer,
+    run: RunFolder,
+    learned: Learned | None = None,
+    on_examined: Callable[[], None] = lambda: None,
+) -> Policy:
+    """Train to the end, or until interrupted, as `train` does, with a trainer made before.
+
+    Args:
+        trainer: task, worlds and compiled functions of the training.
+        run: folder held for writing.
+        learned: networks to begin with, as for `train`.
+        on_examined: function that is called after each examination, as for `train`.
+    """
     config = trainer.config
+    require_watchers(config.watch)
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)
@@ -114,6 +122,7 @@ def _train(
             trainer, run, checkpoints, log, progress, background, best, on_examined
         )
         _Session(trainer, interruption, recorder).run(state)
+    return read_policy(run.path / POLICY_FILE, of=config.env)
 
 
 def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> None:
@@ -152,7 +161,7 @@ def _first_state(
 
     if from_first(look) == "resumed":
         step, state, note = found or (0, like, {"best": -1.0})
-        return step, trainer.place(state), note["best"]
+        return step, trainer.place(state), _best_score(note, step)
     state = trainer.fresh_state()
     if learned is not None:
         state = trainer.place(learned.into(state))
@@ -160,6 +169,16 @@ def _first_state(
     if checkpoints is not None:
         checkpoints.save(0, kept, {"best": -1.0})
     return 0, state, -1.0
+
+
+def _best_score(note: dict, step: int) -> float:
+    """Return the best score so far, as the note of a checkpoint states it."""
+    best = note.get("best")
+    if isinstance(best, bool) or not isinstance(best, int | float):
+        raise InputError(
+            f"the checkpoint of step {step} is not a training's: its note states no number 'best'"
+        )
+    return float(best)
 
 
 def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:

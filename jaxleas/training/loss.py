@@ -13,9 +13,13 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.heads.normal import NormalDistribution
+from jaxleas.envs import NormalDistribution
 from jaxleas.training.averages import ONE_DEVICE, Average
 from jaxleas.training.networks import ActorCritic
+
+# Metrics that are the largest or the smallest of all robots; all others are means.
+LARGEST = ("policy_dist_max_std", "policy_dist_max_loc")
+SMALLEST = ("policy_dist_min_std", "policy_dist_min_loc")
 
 
 @struct.dataclass
@@ -39,31 +43,44 @@ class Experience:
     truncated: Float[Array, "time robots"]
 
 
+@struct.dataclass
+class Minibatch:
+    """Experience of some robots, as the loss takes it.
+
+    Attributes:
+        steps: their experience, with normalised observations.
+        last_observation: their normalised observation after the last step, to bootstrap from.
+        noise: standard normal numbers for each head, to sample the entropy with.
+    """
+
+    steps: Experience
+    last_observation: Float[Array, "robots size"]
+    noise: tuple[Float[Array, "time robots entropy_noise"], ...]
+
+
 def advantages(
+    steps: Experience,
     values: Float[Array, "time robots"],
     last_value: Float[Array, " robots"],
-    reward: Float[Array, "time robots"],
-    terminated: Float[Array, "time robots"],
-    truncated: Float[Array, "time robots"],
-    discount: Any,
-    gae_lambda: Any,
+    hyper: Any,
 ) -> tuple[Float[Array, "time robots"], Float[Array, "time robots"]]:
     """Return targets of the critic and generalised advantages (Schulman et al. 2016).
 
+    Nothing follows a termination. What follows a truncation was not seen, so that nothing is
+    learned from such a step.
+
     Args:
+        steps: experience, of which rewards and ends are read.
         values: value of each observation.
         last_value: value of the observation after the last step.
-        reward: scaled reward.
-        terminated: 1 where nothing follows, else 0.
-        truncated: 1 where what follows was not seen, else 0: nothing is learned from such steps.
-        discount: gamma.
-        gae_lambda: lambda.
+        hyper: hyperparameters discount (gamma), gae_lambda (lambda) and reward_scale.
     """
-    seen = 1.0 - truncated
-    future = discount * (1.0 - terminated)
+    reward = steps.reward * hyper.reward_scale
+    seen = 1.0 - steps.truncated
+    future = hyper.discount * (1.0 - steps.terminated)
     following = jnp.concatenate([values[1:], last_value[None]])
     delta = seen * (reward + future * following - values)
-    decay = gae_lambda * seen * future
+    decay = hyper.gae_lambda * seen * future
 
     def join(later: tuple[Array, Array], earlier: tuple[Array, Array]) -> tuple[Array, Array]:
         return earlier[0] * later[0], earlier[1] + earlier[0] * later[1]
@@ -78,9 +95,7 @@ def advantages(
 
 def ppo_loss(
     params: Any,
-    batch: Experience,
-    last_observation: Float[Array, "robots size"],
-    noise: tuple[Array, ...],
+    batch: Minibatch,
     hyper: Any,
     networks: ActorCritic,
     average: Average = ONE_DEVICE,
@@ -89,34 +104,26 @@ def ppo_loss(
 
     Args:
         params: parameters of actor and critic.
-        batch: experience with normalised observations.
-        last_observation: normalised observation after the last step, to bootstrap from.
-        noise: standard normal numbers for each head, to sample the entropy with.
+        batch: experience to learn from.
         hyper: hyperparameters discount, gae_lambda, clip, entropy, value_weight and reward_scale.
         networks: actor and critic.
         average: average over the devices that hold robots of this minibatch.
     """
-    heads = networks.signature.heads
-    now = networks.signature.distributions(networks.answer(params.policy, batch.observation))
-    values = networks.values(params.value, batch.observation)
-    last_value = networks.values(jax.lax.stop_gradient(params.value), last_observation)
-    targets, advantage = advantages(
-        jax.lax.stop_gradient(values),
-        last_value,
-        batch.reward * hyper.reward_scale,
-        batch.terminated,
-        batch.truncated,
-        hyper.discount,
-        hyper.gae_lambda,
-    )
+    heads, steps = networks.signature.heads, batch.steps
+    now = networks.signature.distributions(networks.answer(params.policy, steps.observation))
+    values = networks.values(params.value, steps.observation)
+    last_value = networks.values(jax.lax.stop_gradient(params.value), batch.last_observation)
+    targets, advantage = advantages(steps, jax.lax.stop_gradient(values), last_value, hyper)
     advantage = average.standardised(advantage)
-    raw = networks.signature.raw(batch.raw_action)
-    before = batch.distributions
+    raw = networks.signature.raw(steps.raw_action)
+    before = steps.distributions
     ratio = jnp.exp(_log_density(heads, raw, now) - _log_density(heads, raw, before))
     clipped = jnp.clip(ratio, 1.0 - hyper.clip, 1.0 + hyper.clip)
     policy_loss = -jnp.mean(jnp.minimum(ratio * advantage, clipped * advantage))
     value_loss = 0.5 * hyper.value_weight * jnp.mean(jnp.square(targets - values))
-    entropy = _total([head.entropy(*each) for head, *each in zip(heads, now, noise, strict=True)])
+    entropy = _total(
+        [head.entropy(*each) for head, *each in zip(heads, now, batch.noise, strict=True)]
+    )
     entropy_loss = -hyper.entropy * jnp.mean(entropy)
     total = policy_loss + value_loss + entropy_loss
     divergence = [head.divergence(*each) for head, *each in zip(heads, before, now, strict=True)]

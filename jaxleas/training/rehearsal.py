@@ -13,23 +13,24 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.configuration.own_code import own_code
-from jaxleas.configuration.registry import is_own
-from jaxleas.configuration.values import value_of
-from jaxleas.envs.answers import (
+from jaxleas.configuration import is_own, own_code, value_of
+from jaxleas.envs import (
+    HostPool,
+    Starts,
+    Task,
+    require_arrays,
     require_examination,
     require_observation,
+    require_rows,
+    require_same,
     require_starts,
     require_step,
+    section_of,
 )
-from jaxleas.envs.array_checks import require_arrays, require_rows, require_same
-from jaxleas.envs.environment import Starts, Task
-from jaxleas.envs.host_starts import HostPool
-from jaxleas.envs.own_task import section_of
-from jaxleas.terrain.seeds import HELD_OUT_SEED
+from jaxleas.terrain import HELD_OUT_SEED
 from jaxleas.training.config import RunConfig
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.types.errors import InputError, OwnCodeError
+from jaxleas.types import InputError, OwnCodeError
 
 
 def rehearse(config: RunConfig, task: Task) -> None:

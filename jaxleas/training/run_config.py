@@ -5,13 +5,10 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.loading import Layers, layers_of, load_layers, validate
-from jaxleas.configuration.own_code import own_code
-from jaxleas.configuration.registry import is_own
-from jaxleas.envs.environment import Task
-from jaxleas.envs.registry import DEFAULT_TASK, TASKS
+from jaxleas.configuration import Layers, is_own, layers_of, load_layers, own_code, validate
+from jaxleas.envs import DEFAULT_TASK, TASKS, Task
 from jaxleas.training.config import RunConfig
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 AnyRun = RunConfig[Any, Any]
 

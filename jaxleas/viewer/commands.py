@@ -5,13 +5,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import READING, Reading
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from viser import ViserServer
 
-    from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.robots import Robot
+    from jaxleas.terrain import HeightMap
     from jaxleas.viewer.clips import Clip
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.show import Player
@@ -28,6 +29,7 @@ def view(
     guide: Path | None = None,
     plan: Path | None = None,
     problem: Path | None = None,
+    robot: str | None = None,
     record: Path | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -37,21 +39,22 @@ def view(
     """Show a terrain in the browser; drive policies on it, play back paths and plans.
 
     Args:
-        terrain: .npz height map, .json scene, .stl or .obj mesh, or 16-bit grey .png.
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         policies: run folders, policy.npz or .onnx files: one robot each, side by side.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
         goal: first goal of the robots: x, y [m].
         guide: guide paths to play back, .npz.
         plan: a contact plan to play back, .json; with --problem.
         problem: the contact problem that the plan solves, .json.
+        robot: name of the robot that is played back, or path of its file; by default the robot that
+            the problem names, or talos: guide paths name none.
         record: write the walk to --goal, or the playback, as one HTML file, and end.
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
         reading: what the file does not state itself.
     """
-    from jaxleas.terrain.importers import import_terrain
-    from jaxleas.terrain.scene import read_scene
+    from jaxleas.terrain import import_terrain, read_scene
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
@@ -65,6 +68,9 @@ def view(
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
     clips = _clips(guide, plan, problem)
+    if robot is not None and not clips:
+        raise InputError("--robot is played back with --guide or --plan; a policy has its own")
+    drawn = _robot_to_draw(clips, robot) if clips else None
     ground = import_terrain(terrain, reading)
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
@@ -78,8 +84,8 @@ def view(
             paint_sky(server)
         # JAX is loaded only now, while the browser draws the ground.
         players: list[Player] = []
-        if clips:
-            players.append(_play_back(server, clips, playing=record is not None))
+        if drawn is not None:
+            players.append(_play_back(server, drawn, clips, playing=record is not None))
         if policies:
             waiting = server.gui.add_markdown("The policies are being loaded ...")
             players.append(_drive(server, ground, policies, start, goal))
@@ -158,10 +164,18 @@ def _announce(server: "ViserServer", browser: bool) -> None:
     )
 
 
-def _play_back(server: "ViserServer", clips: "list[Clip]", playing: bool) -> "Player":
-    from jaxleas.viewer.playback import Playback, figure_robot
+def _robot_to_draw(clips: "list[Clip]", named: str | None) -> "Robot":
+    from jaxleas.viewer.playback import robot_to_draw
 
-    playback = Playback(server, figure_robot(clips), clips)
+    return robot_to_draw(clips, named)
+
+
+def _play_back(
+    server: "ViserServer", robot: "Robot", clips: "list[Clip]", playing: bool
+) -> "Player":
+    from jaxleas.viewer.playback import Playback
+
+    playback = Playback(server, robot, clips)
     if playing:
         playback.play()
     return playback
@@ -174,14 +188,13 @@ def _drive(
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
 ) -> "Drive":
-    from jaxleas.envs.steering.env import SteeringEnv
-    from jaxleas.guide.loading import load_policy
-    from jaxleas.guide.standing import choose_start, require_start
-    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide import choose_start, load_policy, require_start
+    from jaxleas.terrain import make_atlas
     from jaxleas.viewer.drive import Drive
+    from jaxleas.viewer.driven_robot import DrivenRobot
     from jaxleas.viewer.ground import look_near
-    from jaxleas.viewer.walker import Walker
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.xla import keep_compiled_programs
 
     keep_compiled_programs()
     loaded = [load_policy(each) for each in policies]
@@ -192,11 +205,11 @@ def _drive(
     x, y, _ = place.position
     look_near(server, terrain, (float(x), float(y)))
     atlas = make_atlas([terrain])
-    walkers = [
-        Walker(name, env, policy, atlas)
+    driven = [
+        DrivenRobot(name, env, policy, atlas)
         for name, env, policy in zip(_names(policies), envs, loaded, strict=True)
     ]
-    drive = Drive(server, terrain, walkers, place)
+    drive = Drive(server, terrain, driven, place)
     if goal is not None:
         drive.send(goal)
     return drive

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jaxleas.guide.standing import Pose
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.viewer.figure import ROBOTS, Figure, draw_goal
+from jaxleas.terrain import HeightMap
+from jaxleas.types import RootPose
+from jaxleas.viewer.driven_robot import DrivenRobot
+from jaxleas.viewer.rider import Rider
+from jaxleas.viewer.robot_shape import ROBOTS, RobotShape, draw_goal
 from jaxleas.viewer.terrain_mesh import meet
-from jaxleas.viewer.walker import Walker
 
 if TYPE_CHECKING:
     from viser import ViserServer
@@ -21,70 +22,14 @@ LEAD = 1.0
 """Distance ahead of a steered robot at which its goal is set, again and again [m]."""
 TURN = np.radians(15.0)
 """Angle by which a key press turns the course [rad]."""
-MOST_STEPS_A_FRAME = 10
-"""Maximum number of steps per frame: with more the page would freeze while robots walk."""
-TRAIL_EVERY, SEEN_EVERY, SPEAK_EVERY = 9, 4, 8
-"""Frames between two drawings of the trail, of what the policy sees, and of the status: the page
-rebuilds each of them."""
+SPEAK_EVERY = 8
+"""Frames between two drawings of the status, which the page rebuilds."""
 WORDS = {
     "waiting": "stands, waiting for a goal",
     "walking": "walks",
     "arrived": "has arrived",
     "invalid": "stands invalid: reset it",
 }
-
-
-class Rider:
-    """A walker and its figure on the page."""
-
-    def __init__(self, walker: Walker, figure: Figure, start: Pose) -> None:
-        self.walker, self.figure, self._start = walker, figure, start
-        self.time_step = walker.env.config.limits.time_step
-        self.reset()
-
-    def reset(self) -> None:
-        """Return to the start."""
-        self.walker.reset(self._start)
-        self._elapsed, self._frames = 0.0, 0
-        self.figure.trail.begin(self._start.position)
-        self._draw()
-
-    def advance(self, seconds: float, steer: Callable[[Walker], None]) -> None:
-        """Advance the robot; the figure moves evenly between configurations.
-
-        Args:
-            seconds: time on the robot's clock [s].
-            steer: function called before each step.
-        """
-        if self.walker.state != "walking":
-            return
-        self._frames += 1
-        self._elapsed = min(self._elapsed + seconds, MOST_STEPS_A_FRAME * self.time_step)
-        while self._elapsed >= self.time_step and self.walker.state == "walking":
-            self._elapsed -= self.time_step
-            steer(self.walker)
-            self.walker.step()
-            self.figure.trail.add(self.walker.pose.position)
-        stands = self.walker.state != "walking"
-        if stands or self._frames % TRAIL_EVERY == 0:
-            self.figure.trail.draw()
-        if self._frames % SEEN_EVERY == 0:
-            self._perceive()
-        self._draw()
-
-    def _draw(self) -> None:
-        walking = self.walker.state == "walking" and self.walker.steps > 0
-        self.figure.place(
-            self.walker.between(self._elapsed / self.time_step) if walking else self.walker.pose
-        )
-        if not walking:
-            self._perceive()
-
-    def _perceive(self) -> None:
-        low, high = self.walker.env.height_range
-        share = (self.walker.sight.heights - low) / (high - low)
-        self.figure.show_seen(self.walker.points_seen(), np.clip(share, 0.0, 1.0))
-        self.figure.mark(self.walker.state != "invalid")
 
 
 class Drive:
@@ -95,14 +40,18 @@ class Drive:
     """
 
     def __init__(
-        self, server: "ViserServer", terrain: HeightMap, walkers: Sequence[Walker], start: Pose
+        self,
+        server: "ViserServer",
+        terrain: HeightMap,
+        robots: Sequence[DrivenRobot],
+        start: RootPose,
     ) -> None:
         """Draw robots and panel.
 
         Args:
             server: server of the page.
             terrain: terrain that users click on.
-            walkers: robots, drawn side by side.
+            robots: robots, drawn side by side.
             start: pose where all of them begin.
         """
         self._terrain = terrain
@@ -111,8 +60,8 @@ class Drive:
         self._spoken = ("", "")
         self._frames = 0
         self._riders = [
-            Rider(walker, self._figure(server, index, walker, len(walkers) > 1), start)
-            for index, walker in enumerate(walkers)
+            Rider(driven, self._shape(server, index, driven, len(robots) > 1), start)
+            for index, driven in enumerate(robots)
         ]
         self._goal = draw_goal(server, start.position)
         with server.gui.add_folder("Drive"):
@@ -123,7 +72,7 @@ class Drive:
     @property
     def busy(self) -> bool:
         """Whether a robot is still walking."""
-        return any(rider.walker.state == "walking" for rider in self._riders)
+        return any(rider.driven.state == "walking" for rider in self._riders)
 
     def frame(self, seconds: float) -> None:
         """Advance the page.
@@ -141,7 +90,7 @@ class Drive:
         """Send the robots to a goal (x, y) [m]."""
         self._course = None
         for rider in self._riders:
-            rider.walker.seek(goal)
+            rider.driven.seek(goal)
         ground = np.nan_to_num(self._terrain.height_at(np.array([goal]))[0])
         self._goal.position = (goal[0], goal[1], float(ground))
         self._goal.visible = True
@@ -158,30 +107,32 @@ class Drive:
         """Stop the robots."""
         self._course = None
         for rider in self._riders:
-            rider.walker.stop()
+            rider.driven.stop()
 
     def turn(self, angle: float) -> None:
         """Walk on a course turned by an angle [rad]; the first course is the heading."""
         if self._course is None:
-            self._course = self._riders[0].walker.pose.yaw
+            self._course = float(self._riders[0].driven.pose.yaw)
             self._goal.visible = False
         self._course += angle
         for rider in self._riders:
-            self._steer(rider.walker)
+            self._steer(rider.driven)
 
-    def _steer(self, walker: Walker) -> None:
+    def _steer(self, driven: DrivenRobot) -> None:
         if self._course is not None:
-            x, y, _ = walker.pose.position
-            walker.seek((x + LEAD * np.cos(self._course), y + LEAD * np.sin(self._course)))
+            x, y, _ = driven.pose.position
+            driven.seek((x + LEAD * np.cos(self._course), y + LEAD * np.sin(self._course)))
 
-    def _figure(self, server: "ViserServer", index: int, walker: Walker, named: bool) -> Figure:
-        name, robot = f"/robot_{index}", walker.env.robot
-        figure = Figure(server, name, robot, ROBOTS[index % len(ROBOTS)])
+    def _shape(
+        self, server: "ViserServer", index: int, driven: DrivenRobot, named: bool
+    ) -> RobotShape:
+        name, robot = f"/robot_{index}", driven.env.robot
+        shape = RobotShape(server, name, robot, ROBOTS[index % len(ROBOTS)])
         if named:
             # They begin at one place: each name is above the previous one.
             top = max(box.high[2] for box in robot.trunk) + 0.15 * (index + 1)
-            server.scene.add_label(f"{name}/name", walker.name, position=(0.0, 0.0, top))
-        return figure
+            server.scene.add_label(f"{name}/name", driven.name, position=(0.0, 0.0, top))
+        return shape
 
     def _add_panel(self, server: "ViserServer") -> None:
         gui = server.gui
@@ -204,13 +155,13 @@ class Drive:
         @reach.on_update
         def _(_: Any) -> None:
             for rider in self._riders:
-                for mesh in rider.figure.reach:
+                for mesh in rider.shape.reach:
                     mesh.visible = reach.value
 
         @seen.on_update
         def _(_: Any) -> None:
             for rider in self._riders:
-                rider.figure.show_points(seen.value)
+                rider.shape.show_points(seen.value)
 
     def _button(self, gui: Any, label: str, act: Callable[[], None]) -> None:
         gui.add_button(label).on_click(lambda _: self._wishes.put(act))
@@ -237,14 +188,14 @@ class Drive:
     def _speak(self) -> None:
         """Show the status of each robot: a new state at once, and the numbers now and then."""
         self._frames += 1
-        walkers = [rider.walker for rider in self._riders]
-        states = " ".join(walker.state for walker in walkers)
+        robots = [rider.driven for rider in self._riders]
+        states = " ".join(driven.state for driven in robots)
         if states == self._spoken[0] and self._frames % SPEAK_EVERY:
             return
         text = "".join(
-            f"<p><b>{html.escape(walker.name)}</b> {WORDS[walker.state]}; {walker.seconds:.0f} s,"
-            f" margin {walker.sight.margin:+.2f} m</p>"
-            for walker in walkers
+            f"<p><b>{html.escape(driven.name)}</b> {WORDS[driven.state]}; {driven.seconds:.0f} s,"
+            f" margin {driven.sight.margin:+.2f} m</p>"
+            for driven in robots
         )
         if text != self._spoken[1]:
             self._status.content = f'<div style="font-size: 0.875em; margin: 0.6em">{text}</div>'

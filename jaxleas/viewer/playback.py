@@ -1,5 +1,6 @@
 """Playback: a slider for the time, and the robot at its pose at that time."""
 
+import logging
 from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -8,35 +9,52 @@ import numpy as np
 
 from jaxleas.robots import Robot, load_robot, load_talos
 from jaxleas.types import InputError
-from jaxleas.viewer.clips import Clip, Foothold
-from jaxleas.viewer.figure import INVALID, LIMBS, OTHER_LIMB, Figure, mesh_of_hull
+from jaxleas.viewer.clips import Clip
+from jaxleas.viewer.footholds import Foothold
 from jaxleas.viewer.ground import Colour
 from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.ribbon import draw_path
+from jaxleas.viewer.robot_shape import INVALID, RobotShape, limb_colour, mesh_of_hull
 
 if TYPE_CHECKING:
     from viser import GlbHandle, ViserServer
 
+_LOG = logging.getLogger("jaxleas")
+
 PLAYED: Colour = (60, 110, 170)
 THICKNESS = 0.015  # thickness of a sole [m]
-LIFT = np.array([0.0, 0.0, 0.5 * THICKNESS])
+SMALLEST = 0.02  # half size of a drawn sole at least, so that a point foot can be seen [m]
 LIFTED = 0.25
 """Opacity of a foothold that the foot has left."""
 
 
-def figure_robot(clips: Sequence[Clip]) -> Robot:
-    """Return the robot to draw: that of the clips, or Talos where it is not known.
+def robot_to_draw(clips: Sequence[Clip], named: str | None = None) -> Robot:
+    """Return the robot to draw: the named one, else that of the clips, else Talos.
+
+    Args:
+        clips: clips to be shown together.
+        named: name of a robot, or path of its file, as a person gave it.
 
     Raises:
-        InputError: the clips are of different robots.
+        InputError: the clips are of different robots, or there is no robot of the given name.
     """
     names = list(dict.fromkeys(clip.robot for clip in clips if clip.robot is not None))
     if len(names) > 1:
         raise InputError(f"these are of different robots, {' and '.join(names)}: show them apart")
-    try:
-        return load_robot(names[0]) if names else load_talos()
-    except InputError:  # a contact problem with polytopes of its own may be of any robot
+    if named is not None:
+        return load_robot(named)
+    if not names:
         return load_talos()
+    try:
+        return load_robot(names[0])
+    except InputError:  # a contact problem with polytopes of its own may be of any robot
+        _LOG.warning("there is no robot %r here: Talos is drawn in its place", names[0])
+        return load_talos()
+
+
+def middle_of_sole(foothold: Foothold) -> np.ndarray:
+    """Return the middle of a sole that lies on its surface, whatever way that faces [m]."""
+    return foothold.pose.transform(np.array([[0.0, 0.0, 0.5 * THICKNESS]]))[0]
 
 
 class Playback:
@@ -51,7 +69,7 @@ class Playback:
             clips: clips, of which one is played at a time.
         """
         self._server, self._clips = server, list(clips)
-        self._figure = Figure(server, "/played", robot, PLAYED)
+        self._shape = RobotShape(server, "/played", robot, PLAYED)
         self._time, self._feet = 0.0, []
         for index, clip in enumerate(clips):
             colour = PLAYED if clip.valid.all() else INVALID
@@ -111,36 +129,34 @@ class Playback:
     def _choose(self, index: int) -> None:
         self._clip, self._time = self._clips[index], 0.0
         self._server.scene.remove_by_name("/footholds")
-        half_size = (*self._clip.half_size, 0.5 * THICKNESS)
         self._feet = [
-            (foothold, self._add_foothold(f"/footholds/{number}", foothold, half_size))
+            (foothold, self._add_foothold(f"/footholds/{number}", foothold))
             for number, foothold in enumerate(self._clip.footholds)
         ]
         self._slider.value = 0.0
         self._draw()
 
-    def _add_foothold(
-        self, name: str, foothold: Foothold, half_size: tuple[float, float, float]
-    ) -> "tuple[GlbHandle, GlbHandle]":
+    def _add_foothold(self, name: str, foothold: Foothold) -> "tuple[GlbHandle, GlbHandle]":
         """Add a sole twice, both hidden: as a standing foot, and as a foothold that was left."""
+        half_size = (*np.maximum(foothold.half_size, SMALLEST), 0.5 * THICKNESS)
         sole = mesh_of_hull(np.array(list(product(*((-half, half) for half in half_size)))))
-        colours = shade(sole, np.array(LIMBS.get(foothold.limb, OTHER_LIMB), float))
+        colours = shade(sole, limb_colour(foothold.limb))
         nodes = (
             add_painted(self._server, f"{name}/standing", sole, colours),
             add_painted(self._server, f"{name}/left", sole, colours, LIFTED),
         )
         for node in nodes:
-            node.position = foothold.position + LIFT
-            node.wxyz = (np.cos(0.5 * foothold.yaw), 0.0, 0.0, np.sin(0.5 * foothold.yaw))
+            node.position = middle_of_sole(foothold)
+            node.wxyz = foothold.pose.quaternion
         return nodes
 
     def _draw(self) -> None:
         now = self._clip.at(self._time)
-        self._figure.show(now is not None)
+        self._shape.show(now is not None)
         if now is not None:
             pose, valid = now
-            self._figure.place(pose)
-            self._figure.mark(valid)
+            self._shape.place(pose)
+            self._shape.mark(valid)
         for foothold, (standing, left) in self._feet:
             stands = foothold.time <= self._time + 1e-9 and self._time < foothold.until
             standing.visible, left.visible = stands, foothold.until <= self._time

@@ -6,16 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.description import describe_steering
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import layout_named
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv, describe_steering, layout_named
 from jaxleas.files import write_bytes, write_json
-from jaxleas.guide.onnx_policy import read_onnx_policy
-from jaxleas.guide.standing import Pose, choose_start, require_start
+from jaxleas.guide import choose_start, read_onnx_policy, require_start
 from jaxleas.robots import Robot
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError
+from jaxleas.terrain import HeightMap
+from jaxleas.types import InputError, RootPose
 from jaxleas.viewer.web_runtime import RUNTIME_FILES, runtime_folder
 
 SOURCES = ("walk.js", "page.js", "page.css", "index.html")
@@ -81,7 +77,7 @@ def write_page(
 
 
 def page_description(
-    config: SteeringConfig, robot: Robot, terrain: HeightMap, start: Pose
+    config: SteeringConfig, robot: Robot, terrain: HeightMap, start: RootPose
 ) -> dict[str, Any]:
     """Return the description of the page for its scripts, which `page.json` holds."""
     stated = describe_steering(config)
@@ -95,7 +91,7 @@ def page_description(
         "walking_height": robot.walking_height,
         "goal_radius": config.goal_radius,
         "trunk": [low[:2].tolist(), high[:2].tolist()],
-        "start": {"position": start.position[:2].tolist(), "yaw": start.yaw},
+        "start": {"position": start.position[:2].tolist(), "yaw": float(start.yaw)},
         "terrain": {
             "rows": rows,
             "columns": columns,

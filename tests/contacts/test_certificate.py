@@ -84,7 +84,7 @@ def test_the_frames_turn_with_the_feet() -> None:
     ("changes", "words"),
     [
         ({"surfaces": ("floor", "moon")}, "stands on 'moon'"),
-        ({"surfaces": ("floor",)}, "1 surfaces and 2 footholds, the problem 2 phases"),
+        ({"surfaces": ("floor",)}, "1 surfaces and 2 footholds, the problem 2 steps"),
         ({"com": None}, "lacks 'com'"),
         ({"feasible": False, "status": "infeasible"}, "is 'infeasible' and has no footholds"),
         ({"footholds": np.full((2, 3), np.nan)}, "not finite"),

@@ -6,7 +6,7 @@ from scipy.optimize import linprog
 
 from jaxleas.contacts.programs import com_places
 from jaxleas.contacts.programs.com_places import FITS, place_coms
-from jaxleas.contacts.programs.steps import make_steps, rotation
+from jaxleas.contacts.programs.constraints import make_constraints, rotation
 from tests.contacts.worlds import problem, random_world
 
 
@@ -22,11 +22,12 @@ def margin(step, number: int, displacement: np.ndarray) -> float:
 
 def judged(seed: int):
     asked = problem(random_world(seed, "two_com"))
-    steps = make_steps(asked)
+    steps = make_constraints(asked)
     rng = np.random.default_rng(seed)
     displacements = rng.uniform([-0.4, -0.4, -0.25], [0.4, 0.4, 0.25], (len(steps), 3))
     turns = np.broadcast_to(rotation(0.0), (len(steps), 2, 3, 3))
-    return steps, displacements, *place_coms(steps, displacements, asked.foot_half_size, turns)
+    half_sizes = np.broadcast_to(asked.half_sizes["LF"], (len(steps), 2, 2))
+    return steps, displacements, *place_coms(steps, displacements, half_sizes, turns)
 
 
 @pytest.mark.parametrize("alone", [True, False], ids=["small programs", "HiGHS"])

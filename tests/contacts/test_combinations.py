@@ -7,8 +7,8 @@ import pytest
 
 from jaxleas.contacts.programs.attempt import DECIDED, attempt
 from jaxleas.contacts.programs.combinations import Combinations
+from jaxleas.contacts.programs.constraints import make_constraints
 from jaxleas.contacts.programs.placement import place
-from jaxleas.contacts.programs.steps import make_steps
 from tests.contacts.worlds import (
     problem,
     random_world,
@@ -70,16 +70,16 @@ def test_those_to_blame_are_impossible_whatever_the_others_do(model: str) -> Non
     blamed_less = 0
     for seed in range(5):
         asked = problem(random_world(seed, model))
-        steps = make_steps(asked)
-        for chosen in itertools.product(*(phase.candidates for phase in asked.phases)):
+        steps = make_constraints(asked)
+        for chosen in itertools.product(*(phase.candidates for phase in asked.steps)):
             placed = place(asked, steps, chosen)
-            if placed.outcome == "optimal":
+            if placed.status == "optimal":
                 continue
             assert placed.blamed
             blamed_less += len(placed.blamed) < len(asked)
-            for other in itertools.product(*(phase.candidates for phase in asked.phases)):
+            for other in itertools.product(*(phase.candidates for phase in asked.steps)):
                 if all(other[k] == chosen[k] for k in placed.blamed):
-                    assert place(asked, steps, other).outcome == "infeasible"
+                    assert place(asked, steps, other).status == "infeasible"
             break
     assert blamed_less >= 2, "blaming everybody teaches nothing"
 
@@ -89,11 +89,11 @@ def test_a_decision_that_failed_is_taken_back(shared) -> None:
     (entry,) = [e for e in reference_entries(shared) if e["id"] == "hppenv_rubbles_4_25"]
     asked = reference_problem(shared, entry, "two_com")
     found = attempt(asked)
-    assert found.outcome == "optimal"
+    assert found.status == "optimal"
     assert found.combinations > 1
     taken_back = 0
     for phase, point, chosen in zip(
-        asked.phases, found.relaxed.footholds, found.surfaces, strict=True
+        asked.steps, found.relaxed.footholds, found.surfaces, strict=True
     ):
         distance = {name: float(asked.surfaces[name].distance(point)) for name in phase.candidates}
         taken_back += min(distance.values()) <= DECIDED < distance[chosen]

@@ -32,10 +32,10 @@ def folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize("planner", ["mip", "sl1m"])
 def test_plan_then_check(folder, capsys, planner: str) -> None:
     cli.run(f"plan good.json --planner {planner} --out plan.json --picture plan.png".split())
-    assert f"{planner}: feasible, 4 phases" in capsys.readouterr().out
+    assert f"{planner}: feasible, 4 steps" in capsys.readouterr().out
     assert (folder / "plan.png").stat().st_size > 5000
     cli.run(["check", "plan.json", "good.json"])
-    assert "plan.json is certified: 4 phases" in capsys.readouterr().out
+    assert "plan.json is certified: 4 steps" in capsys.readouterr().out
     written = json.loads((folder / "plan.json").read_text())
     assert written["certificate"]["max_violation_m"] <= 1e-6
     assert len(written["surfaces"]) == len(written["footholds"]) == len(written["com"]) == 4
@@ -47,7 +47,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
     written = json.loads((folder / "plan.json").read_text())
     written["footholds"][2][2] += 0.01
     write_json("plan.json", written)
-    with pytest.raises(NotCertifiedError, match=r"surface's plane, phase 2: 0.01 m") as caught:
+    with pytest.raises(NotCertifiedError, match=r"surface's plane, step 2: 0.01 m") as caught:
         cli.run(["check", "plan.json", "good.json"])
     assert caught.value.exit_code == 1
 
@@ -55,7 +55,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
 def test_an_infeasible_problem_is_an_answer(folder, capsys) -> None:
     cli.run(["plan", "wide.json", "--out", "plan.json", "--picture", "why.png"])
     text = capsys.readouterr().out
-    assert "mip: infeasible (3 of 4 phases can be made)" in text
+    assert "mip: infeasible (3 of 4 steps can be made)" in text
     assert "first step that cannot be made" in text
     plan = read_plan(folder / "plan.json")
     assert plan.status == "infeasible"
@@ -68,7 +68,7 @@ def test_an_infeasible_problem_is_an_answer(folder, capsys) -> None:
 def test_contacts_from_guide_to_plan(folder, capsys) -> None:
     line = "contacts guide.npz --scene scene.json --out plan.json --problem made.json"
     cli.run([*line.split(), "--cost", "linear", "--picture", "plan.svg"])
-    assert "mip: feasible, 14 phases" in capsys.readouterr().out
+    assert "mip: feasible, 14 steps" in capsys.readouterr().out
     made = read_problem(folder / "made.json")
     assert len(made) == 14
     cli.run(["check", "plan.json", "made.json"])
@@ -104,7 +104,7 @@ def test_late_is_written_as_late(folder) -> None:
 def test_without_guide_every_surface_is_a_candidate(folder) -> None:
     cli.run(["plan", "good.json", "--without-guide", "--out", "plan.json"])
     free = problem(stones(0.1)).without_guide()
-    assert all(len(phase.candidates) == 5 for phase in free.phases[:-1])
+    assert all(len(phase.candidates) == 5 for phase in free.steps[:-1])
     assert read_plan(folder / "plan.json").feasible
 
 
@@ -128,7 +128,7 @@ def test_the_picture_of_a_failure_marks_the_step(tmp_path) -> None:
     asked = problem(stones(0.45))
     plan = plan_mip(asked)
     assert plan.last_feasible_phase is not None
-    failing = asked.phases[plan.last_feasible_phase + 1]
+    failing = asked.steps[plan.last_feasible_phase + 1]
     assert failing_candidates(asked, plan) == failing.candidates
     draw_plan(tmp_path / "a.svg", asked, plan)
     assert "ff00ff" in (tmp_path / "a.svg").read_text()

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.optimize import linprog
 
 from jaxleas import cli
 from jaxleas.contacts import (
+    Stepping,
     certify,
     certify_stance,
     plan_mip,
@@ -19,11 +21,12 @@ from jaxleas.contacts import (
     stances_of,
     write_problem,
 )
+from jaxleas.contacts.planner_settings import stored_settings
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import parse_problem
 from jaxleas.contacts.stances import contact_pose
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import read_verdicts
+from jaxleas.labels import MipSettings, Sl1mSettings, judge, read_verdicts
 from jaxleas.robots import write_robot
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.types import Contact, InputError, RootPose, Stance
@@ -50,21 +53,21 @@ def guide(length: float = 1.2):
 
 
 def three_feet(**options) -> ContactProblem:
-    given = {"robot": "tripod", "model": "feet", "every": 5} | options
-    return problem_from_guide(guide(), Scene({"floor": FLOOR}), **given)
+    stepping = Stepping(**({"model": "feet", "every": 5} | options))
+    return problem_from_guide(guide(), Scene({"floor": FLOOR}), "tripod", stepping)
 
 
 @pytest.mark.parametrize("planner", [plan_mip, plan_sl1m])
 def test_a_three_legged_robot_gets_a_certified_plan(here, planner) -> None:
     asked = three_feet()
-    names = [phase.foot for phase in asked.phases]
+    names = [phase.foot for phase in asked.steps]
     assert names == [list(PLACES)[index % 3] for index in range(len(asked))]
     plan = planner(asked)
     assert plan.feasible
     assert certify(asked, plan).certified
     stances = stances_of(asked, plan)
     assert len(stances) == len(asked) + 1
-    for phase, before, after in zip(asked.phases, stances, stances[1:], strict=False):
+    for phase, before, after in zip(asked.steps, stances, stances[1:], strict=False):
         assert set(before.changed(after)) <= {phase.foot}
         assert len(after) == 3
 
@@ -120,7 +123,7 @@ def stones_for_three(seed: int) -> dict:
 
 def by_brute_force(problem: ContactProblem) -> bool:
     """Try every choice of surfaces with a linear program each, written for itself."""
-    every = [phase.candidates for phase in problem.phases]
+    every = [phase.candidates for phase in problem.steps]
     return any(_placed(problem, choice) for choice in itertools.product(*every))
 
 
@@ -130,7 +133,7 @@ def _placed(problem: ContactProblem, choice: tuple[str, ...]) -> bool:
     where: dict[str, tuple[int | None, np.ndarray]] = {
         name: (None, pose.position) for name, pose in problem.initial.items()
     }
-    for index, (phase, name) in enumerate(zip(problem.phases, choice, strict=True)):
+    for index, (phase, name) in enumerate(zip(problem.steps, choice, strict=True)):
         block = np.zeros((3, size))
         block[:, 3 * index : 3 * index + 3] = np.eye(3)
         corners = problem.surfaces[name].vertices
@@ -200,7 +203,7 @@ def test_model_and_first_foot_are_asked_of_the_robot(here) -> None:
         three_feet(model="two_com")
     with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
         three_feet(first_foot="LF")
-    assert three_feet(first_foot="H").phases[1].foot == "FL"
+    assert three_feet(first_foot="H").steps[1].foot == "FL"
 
 
 def test_a_three_legged_robot_is_labelled_by_its_name(here) -> None:
@@ -218,6 +221,32 @@ def test_a_three_legged_robot_is_labelled_by_its_name(here) -> None:
     assert (first.success, second.success) == (True, False)
     with pytest.raises(InputError, match="tripod"):
         cli.run([*line.split(), *["--planner", "sampling", "--out", "others"]])
+
+
+@pytest.mark.parametrize("kind", [MipSettings, Sl1mSettings])
+def test_a_stated_first_foot_that_the_robot_lacks_is_refused_but_the_default_is_not(
+    here, kind
+) -> None:
+    name = "mip" if kind is MipSettings else "sl1m"
+    scene, options = Scene({"floor": FLOOR}), {"model": "feet", "keep_every": 5}
+    ask = lambda settings: judge(name, scene, [guide()], settings, robot="tripod")  # noqa: E731
+    assert ask(kind(**options))[0].success
+    with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
+        ask(kind(**options, first_foot="LF"))
+    copied = pickle.loads(pickle.dumps(kind(**options, first_foot="LF")))  # as a worker gets it
+    with pytest.raises(InputError, match="first foot must be FL or FR or H, not 'LF'"):
+        ask(copied.model_copy(update={"keep_every": 6}))
+
+
+def test_stored_settings_state_only_what_is_not_the_default(here) -> None:
+    given = MipSettings(model="feet", keep_every=5)
+    stored = json.loads(json.dumps(given.model_dump(mode="json")))
+    after = stored_settings("mip", stored)
+    assert after == given
+    verdicts = judge("mip", Scene({"floor": FLOOR}), [guide()], after, robot="tripod")
+    assert verdicts[0].success
+    with pytest.raises(InputError, match="--samples is for the planner sampling, not for mip"):
+        stored_settings("mip", {**stored, "samples": 500})
 
 
 def palm_on_the_wall() -> tuple[Stance, Scene]:

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
+from jaxleas.contacts import Stepping
 from jaxleas.contacts.from_guide import nearest_below, problem_from_guide
 from jaxleas.contacts.guide_file import read_guide_path
-from jaxleas.contacts.problem import ContactProblem, Phase
+from jaxleas.contacts.problem import ContactProblem, Step
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.files import write_npz
@@ -28,7 +29,7 @@ def scene(**surfaces) -> Scene:
     return Scene({name: np.array(each, float) for name, each in surfaces.items()})
 
 
-def allowed(made: ContactProblem, phase: Phase) -> set[str]:
+def allowed(made: ContactProblem, phase: Step) -> set[str]:
     """Return the scene's surfaces of which a part is a candidate."""
     return {made.whole(name) for name in phase.candidates}
 
@@ -37,19 +38,19 @@ FLOOR = scene(floor=rectangle(-1, 5, -1, 1))
 
 
 def test_one_step_for_each_kept_configuration() -> None:
-    made = problem_from_guide(straight(2.0), FLOOR, every=10)
+    made = problem_from_guide(straight(2.0), FLOOR, "talos", Stepping(every=10))
     assert len(made) == 10
-    assert [phase.foot for phase in made.phases] == ["LF", "RF"] * 5
-    np.testing.assert_allclose([p.root[0] for p in made.phases], np.arange(1, 11) * 0.2)
-    assert [allowed(made, phase) for phase in made.phases] == [{"floor"}] * 10
+    assert [phase.foot for phase in made.steps] == ["LF", "RF"] * 5
+    np.testing.assert_allclose([p.root[0] for p in made.steps], np.arange(1, 11) * 0.2)
+    assert [allowed(made, phase) for phase in made.steps] == [{"floor"}] * 10
     for foot, side in (("LF", 0.0848), ("RF", -0.0848)):
         np.testing.assert_allclose(made.initial[foot].position, [0.0, side, 0.0], atol=1e-12)
 
 
 def test_the_guides_last_configuration_is_always_kept() -> None:
-    made = problem_from_guide(straight(2.1), FLOOR, every=20)
+    made = problem_from_guide(straight(2.1), FLOOR, "talos", Stepping(every=20))
     assert len(made) == 6
-    assert made.phases[-1].root[0] == pytest.approx(2.1)
+    assert made.steps[-1].root[0] == pytest.approx(2.1)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2, np.pi / 4])
@@ -67,8 +68,9 @@ def test_the_window_turns_with_the_root(yaw: float) -> None:
                 "outside": (patch + goal + [0.43, 0.0, 0.01]) @ turn.T,
             }
         ),
+        "talos",
     )
-    assert allowed(made, made.phases[-1]) == {"floor", "inside"}
+    assert allowed(made, made.steps[-1]) == {"floor", "inside"}
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2])
@@ -77,18 +79,18 @@ def test_a_candidate_is_what_lies_in_the_window(yaw: float) -> None:
     small = np.array(rectangle(0.26, 0.30, -0.02, 0.02, 0.01)) @ turn.T
     strip = np.array(rectangle(-3.0, 3.0, -0.2, 3.0)) @ turn.T
     guide = straight(0.56, yaw=yaw)
-    made = problem_from_guide(guide, Scene({"strip": strip, "small": small}))
+    made = problem_from_guide(guide, Scene({"strip": strip, "small": small}), "talos")
     assert set(made.whole_surfaces) == {"strip", "small"}
-    assert made.phases[0].candidates[0] == "small", "all of it: its own name"
-    for index, phase in enumerate(made.phases):
+    assert made.steps[0].candidates[0] == "small", "all of it: its own name"
+    for index, phase in enumerate(made.steps):
         (part,) = [made.surfaces[n].vertices for n in phase.candidates if made.whole(n) == "strip"]
         local = (part - phase.root) @ turn
         np.testing.assert_allclose(local[:, :2].min(axis=0), [-0.4, -0.2], atol=1e-9)
         np.testing.assert_allclose(local[:, :2].max(axis=0), [0.4, 0.4], atol=1e-9)
         assert f"strip@{index}" in phase.candidates
     free = made.without_guide()
-    assert set(free.phases[0].candidates) == {"strip", "small"}
-    assert free.phases[-1].candidates == made.phases[-1].candidates
+    assert set(free.steps[0].candidates) == {"strip", "small"}
+    assert free.steps[-1].candidates == made.steps[-1].candidates
 
 
 def test_the_window_holds_the_feet_near_the_guide() -> None:
@@ -99,18 +101,22 @@ def test_the_window_holds_the_feet_near_the_guide() -> None:
         ahead=rectangle(0.9, 1.2, -0.3, 0.3),
     )
     guide = straight(0.6)
-    assert plan_mip(problem_from_guide(guide, aside, every=30, window=1.0)).feasible
-    plan = plan_mip(problem_from_guide(guide, aside, every=30, window=0.8))
+    assert plan_mip(
+        problem_from_guide(guide, aside, "talos", Stepping(every=30, window=1.0))
+    ).feasible
+    plan = plan_mip(problem_from_guide(guide, aside, "talos", Stepping(every=30, window=0.8)))
     assert (plan.status, plan.last_feasible_phase) == ("infeasible", -1)
     assert "LF onto 'ahead'" in plan.reason
-    assert "which is none of its candidates" in plan.reason
+    assert "which is not among its candidates" in plan.reason
 
 
 def test_a_surface_named_like_a_part_is_left_alone() -> None:
     ground = np.array(rectangle(-1, 5, -1, 1), float)
-    made = problem_from_guide(straight(0.28), Scene({"a": ground, "a@0": ground - [0, 0, 0.1]}))
+    made = problem_from_guide(
+        straight(0.28), Scene({"a": ground, "a@0": ground - [0, 0, 0.1]}), "talos"
+    )
     assert set(made.whole_surfaces) == {"a", "a@0"}
-    assert {made.whole(name) for name in made.phases[0].candidates} == {"a", "a@0"}
+    assert {made.whole(name) for name in made.steps[0].candidates} == {"a", "a@0"}
 
 
 def test_rom_candidates_are_the_moving_legs() -> None:
@@ -119,17 +125,17 @@ def test_rom_candidates_are_the_moving_legs() -> None:
         left=rectangle(-1, 3, 0.12, 0.3),
         right=rectangle(-1, 3, -0.3, -0.12),
     )
-    made = problem_from_guide(straight(0.6), sides, candidates="rom")
-    for phase in made.phases:
+    made = problem_from_guide(straight(0.6), sides, "talos", Stepping(candidates="rom"))
+    for phase in made.steps:
         own, other = ("left", "right") if phase.foot == "LF" else ("right", "left")
         assert own in allowed(made, phase)
         assert other not in allowed(made, phase)
 
 
 def test_a_walk_over_the_floor_can_be_planned_and_a_gap_cannot() -> None:
-    assert plan_mip(problem_from_guide(straight(3.0, 0.016), FLOOR)).feasible
+    assert plan_mip(problem_from_guide(straight(3.0, 0.016), FLOOR, "talos")).feasible
     gap = scene(a=rectangle(-1, 1, -1, 1), b=rectangle(1.9, 5, -1, 1))
-    plan = plan_mip(problem_from_guide(straight(3.0, 0.016), gap))
+    plan = plan_mip(problem_from_guide(straight(3.0, 0.016), gap, "talos"))
     assert plan.status == "infeasible"
     assert plan.last_feasible_phase is not None
     assert "first step that cannot be made" in plan.reason
@@ -150,8 +156,10 @@ def test_a_walk_over_the_floor_can_be_planned_and_a_gap_cannot() -> None:
     ],
 )
 def test_a_mistake_is_one_sentence(guide: GuidePath, options: dict, words: str) -> None:
+    robot = options.get("robot", "talos")
+    stated = {name: each for name, each in options.items() if name != "robot"}
     with pytest.raises(InputError, match=words):
-        problem_from_guide(guide, FLOOR, **options)
+        problem_from_guide(guide, FLOOR, robot, Stepping(**stated))
 
 
 def test_the_nearest_point_below() -> None:

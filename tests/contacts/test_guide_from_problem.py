@@ -19,9 +19,9 @@ def run(line: str) -> None:
 
 
 def test_the_guide_goes_through_every_root() -> None:
-    asked = problem_from_guide(straight(1.5, climbing=True), stairs())
+    asked = problem_from_guide(straight(1.5, climbing=True), stairs(), "talos")
     guide = guide_from_problem(asked)
-    for phase in asked.phases:
+    for phase in asked.steps:
         apart = np.linalg.norm(guide.position - phase.root, axis=1)
         assert apart.min() < 1e-9
         assert guide.yaw[apart.argmin()] == pytest.approx(phase.yaw)
@@ -57,7 +57,9 @@ def test_walls_are_obstacles_and_parts_are_no_surfaces() -> None:
 
 def test_from_problem_to_plan_to_check(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
-    write_problem("stairs.json", problem_from_guide(straight(1.5, climbing=True), stairs()))
+    write_problem(
+        "stairs.json", problem_from_guide(straight(1.5, climbing=True), stairs(), "talos")
+    )
     run("plan stairs.json --planner sampling --out plan.json --picture plan.png")
     assert "sampling: feasible" in capsys.readouterr().out
     plan = read_plan("plan.json")
@@ -73,7 +75,7 @@ def test_from_problem_to_plan_to_check(tmp_path, monkeypatch, capsys) -> None:
 def test_without_roots_one_sentence(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     write_json("stones.json", stones(0.1))
-    with pytest.raises(InputError, match=r"phase 0 has no root.*jaxleas contacts GUIDE\.npz"):
+    with pytest.raises(InputError, match=r"step 0 has no root.*jaxleas contacts GUIDE\.npz"):
         run("plan stones.json --planner sampling --out p.json")
     assert not (tmp_path / "p.json").exists()
 

@@ -12,13 +12,12 @@ import pytest
 from jaxleas import cli
 from jaxleas.contacts import certify_postures, plan_sampling, read_plan, write_plan
 from jaxleas.contacts.commands import NotCertifiedError
-from jaxleas.contacts.plan_sampling import walked_problem
+from jaxleas.contacts.plan_sampling import problem_of_steps
 from jaxleas.contacts.posture_model import about, chain
 from jaxleas.contacts.problem import FootPose
-from jaxleas.contacts.sampling.planner import _Walk
+from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.files import write_json, write_npz
 from jaxleas.robots import load_talos
-from jaxleas.robots.legs import leg_posture, load_talos_legs
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
@@ -54,10 +53,10 @@ def test_a_plan_says_where_each_step_goes(climb) -> None:
     assert [each.configuration for each in climb.postures][:: len(climb.postures) - 1] == [0, 120]
     assert len(climb.robustness) == len(climb.postures)
     assert min(climb.robustness) >= 2.0
-    walked = walked_problem(climb, GUIDE, SCENE)
-    for phase, name, point in zip(walked.phases, climb.surfaces, climb.footholds, strict=True):
+    made = problem_of_steps(climb, GUIDE, SCENE)
+    for phase, name, point in zip(made.steps, climb.surfaces, climb.footholds, strict=True):
         assert phase.candidates == (name,)
-        assert float(walked.surfaces[name].distance(point)) < 1e-9
+        assert float(made.surfaces[name].distance(point)) < 1e-9
 
 
 def with_postures(plan, postures: list):
@@ -140,13 +139,13 @@ def test_a_plan_for_another_guide_or_scene_is_refused(climb) -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_joint_by_joint_chain_is_the_legs_kinematics(side: float) -> None:
-    legs = load_talos_legs()
+    left = load_talos().limbs[0].model
     mirror = np.diag([1.0, side, 1.0])
-    for angles in np.random.default_rng(0).uniform(legs.lower, legs.upper, (20, 6)):
-        own = angles if side > 0 else angles * legs.mirror_signs
+    for angles in np.random.default_rng(0).uniform(left.chain.lower, left.chain.upper, (20, 6)):
+        own = angles if side > 0 else angles * left.chain.mirror_signs
         model = load_talos().limbs[0 if side > 0 else 1].model
         frames, origins, sole, turn = chain(model, own)
-        posture = leg_posture(legs, angles)
+        posture = left.posture(angles)
         np.testing.assert_allclose(sole, mirror @ posture.tip, atol=1e-12)
         np.testing.assert_allclose(turn, mirror @ posture.tip_rotation @ mirror, atol=1e-12)
         np.testing.assert_allclose(origins, posture.origins @ mirror, atol=1e-12)
@@ -165,9 +164,11 @@ def test_what_was_reached_is_kept_where_the_walk_stops() -> None:
 
 
 def test_why_neither_foot_moved_is_explained_whatever_the_words(monkeypatch) -> None:
-    stop = _Walk._stop
+    stop = GuideFollower._stop
     monkeypatch.setattr(
-        _Walk, "_stop", lambda self, guide, ending, reason: stop(self, guide, ending, "besetzt")
+        GuideFollower,
+        "_stop",
+        lambda self, guide, ending, reason: stop(self, guide, ending, "besetzt"),
     )
     plan = plan_sampling(straight(4.0), hole())
     assert re.search("besetzt: LF .*; RF ", plan.reason)

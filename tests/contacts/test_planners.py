@@ -74,7 +74,7 @@ def twin(described: dict) -> bool:
                 reach = sets[f"{foot}_in_{other}"]
                 relate(9 * k, other, np.array(reach["A"], float), reach["b"])
                 sole = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], float)
-                half = np.repeat(described["foot_half_size"], 2)
+                sizes = described["foot_half_size"]
                 for number, over in ((0, other), (1, foot)):
                     column = 9 * k + 3 + 3 * number
                     for each in (other, foot):
@@ -82,7 +82,8 @@ def twin(described: dict) -> bool:
                         before, last[foot] = last[foot], k if each == foot else last[foot]
                         relate(column, each, np.array(com["A"], float), com["b"])
                         if each == over:
-                            relate(column, each, sole, half)
+                            size = sizes[each] if isinstance(sizes, dict) else sizes
+                            relate(column, each, sole, np.repeat(size, 2))
                         last[foot] = before
             last[foot] = k
         answer = linprog(
@@ -197,7 +198,7 @@ def test_the_last_step_that_can_be_made(planner: str, model: str) -> None:
         assert plan.status == "infeasible"
         assert plan.last_feasible_phase == good - 1
         assert not plan.feasible
-        assert f"phase {good}" in plan.reason
+        assert f"step {good}" in plan.reason
 
 
 def test_dichotomic_search_asks_few_questions() -> None:
@@ -221,9 +222,9 @@ def test_the_reason_says_how_much_is_missing() -> None:
     )
     plan = plan_mip(problem(described))
     assert plan.last_feasible_phase == -1
-    assert "phase 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
+    assert "step 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
     assert "with at most 0.05 m more reach of the step" in plan.reason
-    assert "onto 'a', which is none of its candidates" in plan.reason
+    assert "onto 'a', which is not among its candidates" in plan.reason
 
 
 @pytest.mark.parametrize(
@@ -272,8 +273,8 @@ def test_a_cost_draws_the_feet_to_the_guide(cost: str) -> None:
     for index, phase in enumerate(described["phases"]):
         phase["root"] = [0.1 + 0.2 * index, 0.02, 0.95]
     asked = problem(described)
-    targets = np.array([phase.root[:2] for phase in asked.phases])
-    side = np.where([p.foot == "LF" for p in asked.phases], 0.0848, -0.0848)
+    targets = np.array([phase.root[:2] for phase in asked.steps])
+    side = np.where([p.foot == "LF" for p in asked.steps], 0.0848, -0.0848)
     targets += np.stack([np.zeros(len(side)), side], axis=1)
 
     def distance(plan) -> float:
@@ -291,7 +292,7 @@ def test_a_cost_draws_the_feet_to_the_guide(cost: str) -> None:
 
 
 def test_a_cost_needs_a_guide() -> None:
-    with pytest.raises(InputError, match="phase 0 has no root"):
+    with pytest.raises(InputError, match="step 0 has no root"):
         plan_mip(problem(stones(0.1)), cost="linear")
 
 

@@ -4,6 +4,7 @@ import math
 import numpy as np
 import pytest
 
+from jaxleas.contacts import Phase
 from jaxleas.contacts.problem_file import parse_problem, read_problem, write_problem
 from jaxleas.files import write_json
 from jaxleas.types.errors import InputError
@@ -98,8 +99,8 @@ def test_a_problem_survives_its_file(tmp_path) -> None:
     assert after.parts == {"stone_1": "start"}
     for name, surface in before.surfaces.items():
         np.testing.assert_allclose(after.surfaces[name].vertices, surface.vertices, atol=1e-12)
-    assert [(p.foot, p.yaw, p.candidates) for p in after.phases] == [
-        (p.foot, p.yaw, p.candidates) for p in before.phases
+    assert [(p.foot, p.yaw, p.candidates) for p in after.steps] == [
+        (p.foot, p.yaw, p.candidates) for p in before.steps
     ]
     assert list(before.polytopes.relative) == ["RF_in_LF", "LF_in_RF"]
     for group in ("relative", "com"):
@@ -125,3 +126,9 @@ def test_either_winding_and_a_needless_corner_are_the_same_surface() -> None:
         assert len(surface.vertices) == 4
         np.testing.assert_allclose(surface.normal, [0, 0, 1])
         np.testing.assert_allclose(surface.edge_normals @ [0.3, 0.0, 0.0] < surface.edge_offsets, 1)
+
+
+def test_steps_keep_their_former_names() -> None:
+    asked = problem(stones(0.1))
+    assert asked.phases is asked.steps
+    assert isinstance(asked.steps[0], Phase)

@@ -24,14 +24,14 @@ def cost(asked, names: tuple[str, ...], points: np.ndarray) -> np.ndarray:
 def test_scenario_a1_is_decided_by_the_relaxation() -> None:
     """The reach, 0.3 m, ends on S3's near edge or short of it: every optimum is on a surface."""
     found = attempt(problem(scenario_a(gap=0.0)), pruning=False)
-    assert (found.outcome, found.undecided, found.combinations) == ("optimal", 0, 1)
+    assert (found.status, found.undecided, found.combinations) == ("optimal", 0, 1)
 
 
 def test_scenario_a2_needs_one_combination() -> None:
     """The cost is least between the surfaces: at the one place where three distances balance."""
     described = scenario_a2()
     found = attempt(problem(described), pruning=False)
-    assert (found.outcome, found.undecided, found.combinations) == ("optimal", 1, 1)
+    assert (found.status, found.undecided, found.combinations) == ("optimal", 1, 1)
     np.testing.assert_allclose(found.relaxed.footholds[0], [0.15, 0.15, 0.0], atol=1e-6)
     assert found.surfaces[0] in ("S2", "S3")  # equally near: the cheapest
 
@@ -53,7 +53,7 @@ def test_the_relaxation_minimises_the_cost_map(described: dict) -> None:
     asked = problem(described)
     found = attempt(asked, pruning=False)
     feet, slack = found.relaxed.footholds, found.relaxed.slack
-    names = [phase.candidates for phase in asked.phases]
+    names = [phase.candidates for phase in asked.steps]
     for index, candidates in enumerate(names):
         if len(candidates) > 1:
             here = float(cost(asked, candidates, feet[index : index + 1, :2])[0])

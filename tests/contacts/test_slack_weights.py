@@ -6,10 +6,10 @@ import pytest
 from benchmarks.contacts.l1 import scenario_a2, scenario_b
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.from_guide import problem_from_guide
+from jaxleas.contacts.programs.constraints import make_constraints
 from jaxleas.contacts.programs.relaxation import relax
 from jaxleas.contacts.programs.sl1m import plan_sl1m
 from jaxleas.contacts.programs.slack_weights import SlackWeights, slack_weights
-from jaxleas.contacts.programs.steps import make_steps
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import GuidePath, InputError
 from tests.contacts.worlds import problem
@@ -41,20 +41,20 @@ def guide(aside: float = 0.0, speed: float = 0.08) -> GuidePath:
 
 @pytest.fixture(scope="module")
 def asked():
-    return problem_from_guide(guide(), Scene(TILES))
+    return problem_from_guide(guide(), Scene(TILES), "talos")
 
 
 def test_uniform_weights_are_the_published_sum(asked):
-    candidates = [phase.candidates for phase in asked.phases]
+    candidates = [phase.candidates for phase in asked.steps]
     for row, names in zip(slack_weights(asked, candidates, "uniform"), candidates, strict=True):
         np.testing.assert_array_equal(row, np.ones(len(names)))
 
 
 def test_the_surface_under_the_foot_weighs_as_much_as_all_the_others(asked):
-    candidates = [phase.candidates for phase in asked.phases]
+    candidates = [phase.candidates for phase in asked.steps]
     assert max(map(len, candidates)) > 3
     for row, names, phase in zip(
-        slack_weights(asked, candidates, "guide"), candidates, asked.phases, strict=True
+        slack_weights(asked, candidates, "guide"), candidates, asked.steps, strict=True
     ):
         place = phase.root[:2] + np.array([0.0, 0.0848 if phase.foot == "LF" else -0.0848])
         chosen = names[int(np.argmax(row))]
@@ -68,7 +68,7 @@ def test_the_surface_under_the_foot_weighs_as_much_as_all_the_others(asked):
 def test_what_the_guide_chooses_needs_no_combinations():
     made: dict[SlackWeights, list[bool]] = {"uniform": [], "guide": []}
     for aside in (-0.25, -0.1, 0.05):
-        asked = problem_from_guide(guide(aside), Scene(TILES))
+        asked = problem_from_guide(guide(aside), Scene(TILES), "talos")
         for weights, plans in made.items():
             plan = plan_sl1m(asked, max_combinations=1, weights=weights, diagnose=False)
             plans.append(plan.feasible)
@@ -78,10 +78,10 @@ def test_what_the_guide_chooses_needs_no_combinations():
 
 
 def test_weights_change_where_the_foot_goes_and_not_what_is_allowed(asked):
-    candidates = [phase.candidates for phase in asked.phases]
-    steps = make_steps(asked)
+    candidates = [phase.candidates for phase in asked.steps]
+    steps = make_constraints(asked)
     plain, guided = (relax(asked, steps, candidates, weights=each) for each in ("uniform", "guide"))
-    assert plain.outcome == guided.outcome == "optimal"
+    assert plain.status == guided.status == "optimal"
 
     def total(found) -> float:
         return sum(float(slack.sum()) for slack in found.slack)

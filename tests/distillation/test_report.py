@@ -14,7 +14,7 @@ from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.report_data import count_labels, read_run_data
 from jaxleas.evaluation.result_file import write_evaluation
 from jaxleas.files import read_json, write_json
-from jaxleas.types import InputError
+from jaxleas.types import CAUSES, InputError
 
 from ..evaluation.test_exact import verdict
 from ..reports.test_table import cell, evaluation
@@ -36,6 +36,7 @@ def run(tmp_path):
     answers = [asdict(verdict(n, n % 3 > 0)) for n in range(6)]
     for each in answers[::3]:
         each["reason"] = f"no foothold at configuration {each['path']}"
+        each["cause"] = "no_contact"
     content = {"version": 2, "provenance": {}, "verdicts": answers}
     write_json(path / "round_1" / "labels" / "verdicts" / "g" / "verdicts_000000.json", content)
     return path
@@ -51,7 +52,7 @@ def test_what_is_there_is_shown_and_what_is_not_is_named(run, capsys):
     assert "jaxleas evaluate" in html
     assert "--suite thesis" in html
     assert "is not here" in html
-    assert "2 x no foothold at configuration #" in html
+    assert f"2 x {CAUSES['no_contact']}, such as: no foothold at configuration 0" in html
     assert "Table 4.1" not in html
     assert "report.html" in capsys.readouterr().out
     before = html
@@ -75,7 +76,9 @@ def test_measured_tables_stand_beside_the_printed_ones(run, tmp_path):
 def test_labels_are_counted(run):
     count = count_labels(1, run / "round_1" / "labels")
     assert (count.guides, count.passed, count.undecided) == (6, 4, 0)
-    assert count.reasons == (("no foothold at configuration #", 2),)
+    (failure,) = count.failures
+    assert (failure.count, failure.cause) == (2, CAUSES["no_contact"])
+    assert failure.example == "no foothold at configuration 0"
     assert read_run_data(run, "sampling").labels == [count]
 
 

@@ -89,6 +89,30 @@ def test_what_has_changed_is_judged_again_and_nothing_else(run, flat_suite, tmp_
     assert len(again().cells) == 4
 
 
+OWN_METHOD = """
+class Still:
+    def __init__(self, limits, desired_speed):
+        pass
+
+    def __call__(self, heights_in_root, motion, goal):
+        return motion
+"""
+
+
+def test_a_method_of_ones_own_stands_side_by_side(run, flat_suite, tmp_path, asked, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "own_contender.py").write_text(OWN_METHOD)
+    candidate, names = load_candidate(run), ["own_contender:Still", "rb_lin"]
+    contenders = make_contenders(candidate, wanted=names)
+    assert list(contenders.walkers) == ["rb_lin", "own_contender:Still"]
+    found = compare(candidate, contenders, flat_suite, Planning(("mip",)))
+    own = [each for each in found.cells if each.method == "own_contender:Still"]
+    assert [each.reached for each in own] == [0.0, 0.0]
+    assert [each.stopped for each in own] == [1.0, 1.0]
+    assert set(found.policies) == {"own_contender:Still"}  # its code: what changed walks again
+    assert "own_contender:Still" in markdown(found)
+
+
 def test_methods_are_chosen_by_name(run, tmp_path):
     candidate = load_candidate(run)
     assert list(make_contenders(candidate).walkers) == [
@@ -101,6 +125,7 @@ def test_methods_are_chosen_by_name(run, tmp_path):
         make_contenders(candidate, wanted=["rb_kin"])
     with pytest.raises(InputError, match="there already"):
         make_contenders(candidate, {"leas_p1": run})
+    assert list(make_contenders(candidate, wanted=["leas", "lin"]).walkers) == ["rb_lin", "leas_p1"]
     assert parse_policies(["a=x/y", "b=z=1"])["b"].name == "z=1"
     for wrong in ("leas_p2", "=path", "leas p2=path", "a="):
         with pytest.raises(InputError, match="name=path"):

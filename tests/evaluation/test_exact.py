@@ -12,7 +12,7 @@ from jaxleas.evaluation.exact import (
     summarise_plans,
     walker,
 )
-from jaxleas.evaluation.judge import walk
+from jaxleas.evaluation.judge import roll_out_cell
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.guide import rb_lin
@@ -66,7 +66,7 @@ def two_scenes(flat_suite):
 def test_the_share_is_of_all_starts_and_the_means_are_of_what_succeeded(env, two_scenes):
     (cell,) = two_scenes.cells
     grounds = make_grounds(two_scenes.cells)
-    walked = walk(env, grounds, Fly(), draw_starts(env, grounds, cell, 0), 5)
+    walked = roll_out_cell(env, grounds, Fly(), draw_starts(env, grounds, cell, 0), 5)
     reached = np.array([True] * 6 + [False] * 2)
     walked = replace(walked, reached=reached)
     oracle = Oracle(lambda number: (number in (0, 2, 3), number != 5))
@@ -114,7 +114,7 @@ def test_what_is_known_is_neither_walked_nor_asked_again(env, flat_suite):
 
     def fly(grounds, starts, steps):
         walks.append(steps)
-        return walk(env, grounds, Fly(), starts, steps)
+        return roll_out_cell(env, grounds, Fly(), starts, steps)
 
     first = judge_exact(env, {"fly": fly}, flat_suite, {"sampling": oracle})
     known = {result_key(each): each for each in first}

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jaxleas.evaluation.judge import Walk, judge, path_lengths
+from jaxleas.evaluation.judge import CellRollOut, judge, path_lengths
 from jaxleas.evaluation.starts import Starts
 from jaxleas.guide import rb_lin
 from tests.evaluation.conftest import Fly, StandStill
@@ -76,13 +76,13 @@ def test_path_lengths_by_hand():
     nowhere = np.zeros(2)
     starts = Starts(None, None, np.zeros((2, 1, 3)), area=nowhere, scene=nowhere)  # type: ignore[arg-type]
     flags = np.ones(2, dtype=bool)
-    walk = Walk(
+    roll_outs = CellRollOut(
         starts, position, position[..., 0], position, position[..., 0] == 0, end, flags, ~flags
     )
-    length, straight = path_lengths(walk)
+    length, straight = path_lengths(roll_outs)
     assert length == pytest.approx([7.0, 2.0])
     assert straight == pytest.approx([5.0, 2.0])
-    assert walk.path(1).shape == (3, 3)
-    guide = walk.guide_path(0, 0.5)
+    assert roll_outs.path(1).shape == (3, 3)
+    guide = roll_outs.guide_path(0, 0.5)
     assert guide.time.tolist() == [0.0, 0.5, 1.0]
     assert guide.length == pytest.approx(7.0)

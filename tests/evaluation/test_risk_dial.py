@@ -8,7 +8,7 @@ import pytest
 from jaxleas import cli
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.evaluation.exact import Judged
-from jaxleas.evaluation.judge import summarise, walk
+from jaxleas.evaluation.judge import roll_out_cell, summarise
 from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.risk_dial import Guides, as_json, foresee, join, sweep
 from jaxleas.evaluation.starts import draw_starts, make_grounds
@@ -37,7 +37,7 @@ def test_refused_while_walking_is_what_lies_below_the_threshold_in_the_end(flat_
     grounds = make_grounds([cell])
     free = SteeringEnv(policy.config)
     starts = draw_starts(free, grounds, cell, 0)
-    walked = walk(free, grounds, leas(free, policy), starts, steps)
+    walked = roll_out_cell(free, grounds, leas(free, policy), starts, steps)
     assert walked.reached.sum() >= 6
     assert walked.refused is None
     judged = Judged(walked, (None,) * cell.starts)
@@ -45,7 +45,7 @@ def test_refused_while_walking_is_what_lies_below_the_threshold_in_the_end(flat_
     assert np.ptp(guides.survival[guides.reached]) > 0.01
     threshold = float(np.median(guides.survival[guides.reached]))
     env = SteeringEnv(policy.config, foresight=SurrogateForesight(doubtful, threshold))
-    careful = walk(env, grounds, leas(env, policy), starts, steps)
+    careful = roll_out_cell(env, grounds, leas(env, policy), starts, steps)
     expected = guides.reached & (guides.survival >= threshold)
     sure = np.abs(guides.survival - threshold) > 1e-5  # float32 walks, float64 sums
     np.testing.assert_array_equal(careful.reached[sure], expected[sure])

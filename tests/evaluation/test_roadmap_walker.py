@@ -7,6 +7,7 @@ from jaxleas.evaluation.roadmap_walker import roadmap_walker, stack
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import rb_kino
+from jaxleas.guide.registry import KINO
 from jaxleas.types import GuidePath
 
 
@@ -25,12 +26,12 @@ def line(first: float, last: float, count: int) -> GuidePath:
 def test_paths_of_any_length_make_one_walk():
     short, long = line(0.0, 1.0, 3), line(0.0, 3.0, 5)
     long.valid[4] = False
-    walk = stack([short, long], np.array([True, True]), None)  # type: ignore[arg-type]
-    assert walk.end.tolist() == [2, 4]
-    assert walk.position[0, :, 0] == pytest.approx([0.0, 0.5, 1.0, 1.0, 1.0])
-    assert walk.reached.tolist() == [True, False]
-    assert walk.invalid.tolist() == [False, True]
-    assert len(walk.guide_path(0, 0.2)) == 3
+    roll_outs = stack([short, long], np.array([True, True]), None)  # type: ignore[arg-type]
+    assert roll_outs.end.tolist() == [2, 4]
+    assert roll_outs.position[0, :, 0] == pytest.approx([0.0, 0.5, 1.0, 1.0, 1.0])
+    assert roll_outs.reached.tolist() == [True, False]
+    assert roll_outs.invalid.tolist() == [False, True]
+    assert len(roll_outs.guide_path(0, 0.2)) == 3
 
 
 @pytest.mark.slow
@@ -42,7 +43,7 @@ def test_a_roadmap_leads_around_the_hole_where_the_straight_way_does_not(env):
     starts = draw_starts(env, grounds, cell, suite.stream())
     method = rb_kino(env.config.limits, env.config.desired_speed)
     alone = walker(env, method)(grounds, starts, suite.steps)
-    led = roadmap_walker(env, method, "kino")(grounds, starts, 3000)
+    led = roadmap_walker(env, method, KINO.edges)(grounds, starts, 3000)
     assert led.reached.sum() > alone.reached.sum()
     length, straight = path_lengths(led)
     around = led.reached & ~alone.reached

@@ -138,6 +138,6 @@ def test_a_steering_method_of_ones_own_walks(files, tmp_path, monkeypatch):
 
 
 def test_an_unknown_steering_method_gets_the_nearest_and_the_list(files):
-    with pytest.raises(InputError, match=r"'kimo'; perhaps you meant kino; there are leas, kino"):
+    with pytest.raises(InputError, match="'kimo'; perhaps you meant kino; there are leas"):
         rollout(**files, steering="kimo")
     assert not files["out"].exists()

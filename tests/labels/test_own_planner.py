@@ -16,11 +16,11 @@ from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.opening import open_folder
 from jaxleas.files import read_json
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import Judge, Outcome, OwnPlanner, read_verdicts
+from jaxleas.labels import Judge, Outcome, OwnPlanner, PlannerAnswer, read_verdicts
 from jaxleas.robots import load_talos, robot_digest, write_robot
 from jaxleas.surrogates.label_files import read_labels
 from jaxleas.terrain.scene import write_scene
-from jaxleas.types import InputError
+from jaxleas.types import Cause, InputError
 from tests.contacts.sampling.worlds import hole, straight
 
 # Gets as far as the ground goes under the root; its answers can be spoilt.
@@ -111,13 +111,16 @@ class Spoilt(OwnPlanner):
     def judge(self, scene, path):
         return [
             {"last_index": 3},
-            Outcome(last_index=len(path)),
-            Outcome(last_index=-2, reason="no"),
-            Outcome(last_index=1.5, reason="no"),
-            Outcome(last_index=len(path) - 1, reason="but still"),
-            Outcome(last_index=2),
-            Outcome(last_index=2, steps=-1, reason="no"),
-            Outcome(last_index=2, decided=False),
+            PlannerAnswer(last_index=len(path)),
+            PlannerAnswer(last_index=-2, reason="no"),
+            PlannerAnswer(last_index=1.5, reason="no"),
+            PlannerAnswer(last_index=len(path) - 1, reason="but still"),
+            PlannerAnswer(last_index=2),
+            PlannerAnswer(last_index=2, steps=-1, reason="no"),
+            PlannerAnswer(last_index=2, decided=False),
+            PlannerAnswer(last_index=2, reason="no", cause="bad luck"),
+            PlannerAnswer(last_index=2, reason="no", cause="time_limit"),
+            PlannerAnswer(last_index=len(path) - 1, cause="no_contact"),
         ][self.answer]
 
 
@@ -125,7 +128,7 @@ class Spoilt(OwnPlanner):
     ("answer", "message"),
     enumerate(
         [
-            "judge returned dict, not jaxleas.labels.Outcome",
+            "judge returned dict, not jaxleas.labels.PlannerAnswer",
             r"last_index is \d+, but it should be -1 to",
             "last_index is -2, but it should be",
             "last_index is 1.5, not a whole number",
@@ -133,6 +136,9 @@ class Spoilt(OwnPlanner):
             "the reason is ''",
             "steps is -1",
             "the reason is ''",
+            "cause is 'bad luck', but it should be one of no_start, ",
+            "the cause is 'time_limit'",
+            "the cause is 'no_contact'",
         ]
     ),
 )
@@ -151,6 +157,23 @@ def test_what_is_counted(here) -> None:
     way = np.linalg.norm(np.diff(path.position[: last + 1], axis=0), axis=1).sum()
     assert verdict.mean_step == pytest.approx(way / 2)
     assert (verdict.path, verdict.length, verdict.success) == (3, len(path), False)
+    assert verdict.cause == "other"
+
+
+class Tired(OwnPlanner):
+    cause: Cause | None = None
+    decided: bool = True
+
+    def judge(self, scene, path):
+        return Outcome(1, reason="tired", decided=self.decided, cause=self.cause)
+
+
+def test_an_answer_may_state_its_cause() -> None:
+    """The class may still be called by its former name."""
+    ask = lambda planner: judge_by_own(hole(), PATHS[0], planner)  # noqa: E731
+    assert ask(Tired(cause="collision")).cause == "collision"
+    late = ask(Tired(decided=False))
+    assert (late.decided, late.cause) == (False, "time_limit")
 
 
 @pytest.mark.parametrize(

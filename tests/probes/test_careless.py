@@ -207,7 +207,7 @@ class Wordy(DriftConfig):
         ({"Config": Unswept}, "Unswept.swept: there is no fule; perhaps you meant fuel"),
         ({"Config": OneName}, "OneName.swept is 'fuel'; give a tuple"),
         ({"Config": None}, "has the Config None"),
-        ({"Config": SimpleNamespace}, "derived from jaxleas.envs.environment.TaskConfig"),
+        ({"Config": SimpleNamespace}, "derived from jaxleas.envs.TaskConfig"),
         ({"Worlds": DriftConfig}, "has the Worlds .*WorldsConfig"),
         ({"groups": "near"}, "groups is 'near'; give a tuple"),
         ({"groups": ("near", "near")}, "give a tuple of different names"),

@@ -1,33 +1,35 @@
 import numpy as np
 import pytest
 
-from jaxleas.evaluation.judge import Walk
+from jaxleas.evaluation.judge import CellRollOut
 from jaxleas.reports.pictures import arrow_indices, choose_examples, reach_below_root
 
 
-def a_walk(start, reached, invalid) -> Walk:
+def a_walk(start, reached, invalid) -> CellRollOut:
     position = np.zeros((len(start), 2, 3))
     position[:, 0, :2] = start
     flags = np.array(reached, dtype=bool), np.array(invalid, dtype=bool)
     end = np.ones(len(start), dtype=int)
-    return Walk(None, position, position[..., 0], position, position[..., 0] == 0, end, *flags)  # type: ignore[arg-type]
+    return CellRollOut(
+        None, position, position[..., 0], position, position[..., 0] == 0, end, *flags
+    )  # type: ignore[arg-type]
 
 
 def test_examples_show_a_failure_of_each_kind_and_then_spread():
     start = [(0, 0), (0.1, 0), (0.2, 0), (5, 5), (5, 0)]
-    walk = a_walk(start, [1, 0, 0, 1, 1], [0, 1, 0, 0, 0])
-    chosen = choose_examples(walk, 4, among=5)
+    roll_outs = a_walk(start, [1, 0, 0, 1, 1], [0, 1, 0, 0, 0])
+    chosen = choose_examples(roll_outs, 4, among=5)
     assert chosen[:2] == [1, 2]
     assert set(chosen[2:]) == {3, 4}
 
 
 def test_examples_are_distinct_and_of_the_first_so_many():
     start = np.random.default_rng(0).uniform(size=(30, 2))
-    walk = a_walk(start, [1] * 30, [0] * 30)
-    chosen = choose_examples(walk, 6, among=10)
+    roll_outs = a_walk(start, [1] * 30, [0] * 30)
+    chosen = choose_examples(roll_outs, 6, among=10)
     assert len(set(chosen)) == 6
     assert max(chosen) < 10
-    assert sorted(choose_examples(walk, 99, among=10)) == list(range(10))
+    assert sorted(choose_examples(roll_outs, 99, among=10)) == list(range(10))
 
 
 def test_arrows_are_even_by_distance_and_none_is_lost_turning_on_the_spot():

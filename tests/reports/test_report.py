@@ -4,9 +4,9 @@ from html.parser import HTMLParser
 import pytest
 
 from jaxleas.evaluation.examination import load_candidate
-from jaxleas.evaluation.stage import make_stage
+from jaxleas.evaluation.report_basis import make_report_basis
 from jaxleas.reports.gallery import Picture, draw_gallery
-from jaxleas.reports.report import headlines, render_report, success_rows
+from jaxleas.reports.run_report import headlines, render_report, success_rows
 from tests.evaluation.conftest import StandStill
 from tests.reports.test_table import cell, evaluation
 
@@ -109,8 +109,8 @@ def test_the_success_table_has_the_shape_of_the_thesis():
 
 
 def test_the_gallery_draws_every_kind_of_scene(env):
-    stage = make_stage(starts=4)
-    pictures = draw_gallery(env, {"leas_p1": StandStill()}, stage)
+    basis = make_report_basis(starts=4)
+    pictures = draw_gallery(env, {"leas_p1": StandStill()}, basis)
     assert [each.name for each in pictures] == [
         "transitions",
         "profile",

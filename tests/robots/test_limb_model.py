@@ -6,8 +6,8 @@ from test_chain import draw, toy
 from urdfs import G1, PANDA, TALOS, published
 
 from jaxleas.geometry import Box, Polytope
+from jaxleas.robots import load_talos
 from jaxleas.robots.chain import SerialChain, chain_posture
-from jaxleas.robots.legs import load_talos_legs
 from jaxleas.robots.limb_model import LimbModel
 from jaxleas.robots.numeric_inverse import draw_starts, numeric_inverse
 from jaxleas.robots.spherical_leg import SphericalLeg
@@ -47,14 +47,14 @@ def test_poses_out_of_reach_are_not_reached() -> None:
 
 
 def test_the_search_agrees_with_the_closed_form() -> None:
-    legs = load_talos_legs()
-    chain = read_chain(published(TALOS), "base_link", "leg_left_6_link", legs.left.chain.tip)
+    left = load_talos().limbs[0].model
+    chain = read_chain(published(TALOS), "base_link", "leg_left_6_link", left.chain.tip)
     assert SphericalLeg.of(chain) is not None
     posture = chain_posture(
-        chain, np.random.default_rng(0).uniform(legs.lower, legs.upper, (500, 6))
+        chain, np.random.default_rng(0).uniform(chain.lower, chain.upper, (500, 6))
     )
-    exact, in_reach = legs.left.inverse(posture.tip, posture.tip_rotation)
-    starts = draw_starts(chain, legs.reference)
+    exact, in_reach = left.inverse(posture.tip, posture.tip_rotation)
+    starts = draw_starts(chain, left.reference)
     found, reached = numeric_inverse(chain, starts, posture.tip, posture.tip_rotation)
     assert reached[in_reach].mean() > 0.95
     both = reached & in_reach

@@ -191,6 +191,19 @@ def test_another_format_is_refused(checkpoints: Checkpoints) -> None:
         checkpoints.latest({})
 
 
+@pytest.mark.parametrize("missing", ["leaves", "score", "note"])
+def test_a_manifest_without_one_of_its_parts_is_damaged(checkpoints, missing) -> None:
+    manifest = {"format": 1, "step": 7, "score": 0.5, "note": {}, "leaves": []}
+    del manifest[missing]
+    checkpoints.folder.mkdir(exist_ok=True)
+    for step in (7, 8):  # the best is looked for among all
+        path = checkpoints.folder / f"step_{step:012d}.npz"
+        np.savez(path, manifest=np.frombuffer(json.dumps(manifest).encode(), np.uint8))
+    for read in (checkpoints.latest, checkpoints.best):
+        with pytest.raises(InputError):
+            read({})
+
+
 def test_python_objects_in_a_file_are_never_unpickled(checkpoints: Checkpoints) -> None:
     checkpoints.folder.mkdir()
     path = checkpoints.folder / "step_000000000001.npz"

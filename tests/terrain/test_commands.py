@@ -3,13 +3,14 @@ import pytest
 
 from jaxleas.terrain import HeightMap, read_height_map, read_scene, write_height_map
 from jaxleas.terrain.commands import convert, generate, scenario, show
+from jaxleas.terrain.reading import Reading
 from jaxleas.types import InputError
 
 
 def test_generate_then_import_then_show(tmp_path, capsys):
     scene = generate(out=tmp_path / "scene.json", seed=4, rows=2, columns=3)
     assert len(read_scene(scene).surfaces) > 5
-    converted = convert(scene, out=tmp_path / "map.npz", resolution=0.05)
+    converted = convert(scene, out=tmp_path / "map.npz", reading=Reading(resolution=0.05))
     assert read_height_map(converted).resolution == 0.05
     picture = show(converted, out=tmp_path / "map.png")
     assert picture.read_bytes().startswith(b"\x89PNG")

@@ -110,10 +110,13 @@ def test_a_polygon_larger_than_a_block_is_whole():
     assert (height_map.heights[inside] == 0.25).all()
 
 
-def test_vertical_faces_have_no_height():
+def test_vertical_faces_have_the_height_of_their_upper_edge():
     wall = np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 5], [0, 0, 5]])
     height_map = rasterise(Scene({"a": np.array(square())}, {"wall": wall}), 0.04)
-    assert np.nanmax(height_map.heights) == 0.0
+    high = np.argwhere(height_map.heights == 5.0)
+    assert np.ptp(high[:, 0]) == 0
+    assert np.ptp(high[:, 1]) == 25
+    assert set(np.unique(height_map.heights[np.isfinite(height_map.heights)])) == {0.0, 5.0}
 
 
 def test_inset_neighbours_leave_no_seam():

@@ -4,6 +4,11 @@ import numpy as np
 import pytest
 
 from jaxleas.terrain import Scene, rasterise, read_scene, write_scene
+from jaxleas.terrain.polygons import (
+    PLANARITY_TOLERANCE,
+    planarity_deviation,
+    polygon_area_vector,
+)
 from jaxleas.types import InputError
 
 
@@ -49,7 +54,6 @@ def test_only_surfaces_are_needed(tmp_path):
         ({"surfaces": {"a": [[0, 0, None], [1, 0, 0], [1, 1, 0]]}}, "3 numbers each"),
         ({"surfaces": {"a": square(1e9)}}, "beyond 1000 km"),
         ({"surfaces": {"a": []}}, "surface 'a' has 0 vertices"),
-        ({"surfaces": {"a": square()[::-1]}}, "surface 'a' is clockwise"),
         ({"surfaces": {"a": square()}, "obstacles": {"b": square()[:2]}}, "obstacle 'b' has 2"),
         ({"surfaces": {"a": square()}, "areas": {"c": [[0, 0], [1, 1], [2, 2]]}}, "area 'c'"),
     ],
@@ -75,10 +79,14 @@ def slope(degrees: float, size: float = 1.0) -> list[list[float]]:
     return [[0.0, 0.0, 0.0], [run, 0.0, rise], [run, size, rise], [0.0, size, 0.0]]
 
 
+def ceiling(height: float = 2.0) -> list[list[float]]:
+    """A square that looks down on the floor."""
+    return [[x, y, height] for x, y, _ in square()[::-1]]
+
+
 @pytest.mark.parametrize(
     ("degrees", "who"),
-    [(0, "both"), (30, "both"), (59, "both"), (61, "palms"), (90, "palms"), (135, "palms"),
-     (180, "palms")],
+    [(0, "both"), (30, "both"), (59, "both"), (61, "palms"), (90, "palms"), (135, "palms")],
 )  # fmt: skip
 def test_who_touches_follows_from_the_slope(tmp_path, degrees, who):
     path = tmp_path / "scene.json"
@@ -87,6 +95,52 @@ def test_who_touches_follows_from_the_slope(tmp_path, degrees, who):
     assert scene.who_touches("it") == who
     assert list(scene.walkable) == (["floor", "it"] if who == "both" else ["floor"])
     assert list(scene.pressable) == ["floor", "it"]
+
+
+def test_a_ceiling_is_for_palms_and_a_clockwise_floor_is_turned(tmp_path, caplog):
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"surfaces": {"floor": square(), "over": ceiling()}}))
+    scene = read_scene(path)
+    assert list(scene.walkable) == ["floor"]
+    assert list(scene.pressable) == ["floor", "over"]
+    assert not caplog.records
+    beside = [[x + 5.0, y, z] for x, y, z in square()[::-1]]
+    path.write_text(json.dumps({"surfaces": {"floor": square(), "beside": beside}}))
+    assert list(read_scene(path).walkable) == ["floor", "beside"]
+    assert "surface 'beside' is clockwise seen from above: turned" in caplog.text
+    path.write_text(json.dumps({"surfaces": {"only": square()[::-1]}}))
+    np.testing.assert_array_equal(read_scene(path).surfaces["only"], square())
+    saying = {"surfaces": {"floor": square(), "beside": beside}, "touch": {"beside": "palms"}}
+    path.write_text(json.dumps(saying))
+    assert list(read_scene(path).walkable) == ["floor"]
+
+
+def test_closed_rings_and_clockwise_obstacles_are_mended(tmp_path):
+    path = tmp_path / "scene.json"
+    ring = [*square(), square()[0]]
+    content = {"surfaces": {"a": ring}, "obstacles": {"b": square(0.5)[::-1]},
+               "areas": {"c": [each[:2] for each in square()[::-1]]}}  # fmt: skip
+    path.write_text(json.dumps(content))
+    scene = read_scene(path)
+    np.testing.assert_array_equal(scene.surfaces["a"], square())
+    assert polygon_area_vector(scene.obstacles["b"])[2] == pytest.approx(1.0)
+    assert len(scene.areas["c"]) == 4
+
+
+@pytest.mark.parametrize(("off", "mended"), [(0.0005, True), (0.008, True), (0.04, False)])
+def test_a_vertex_a_few_millimetres_off_its_plane_is_moved_into_it(tmp_path, caplog, off, mended):
+    corners = square()
+    corners[2][2] += off
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"surfaces": {"a": corners}}))
+    if not mended:
+        with pytest.raises(InputError, match="is not planar"):
+            read_scene(path)
+        return
+    vertices = read_scene(path).surfaces["a"]
+    assert planarity_deviation(vertices) < PLANARITY_TOLERANCE
+    assert np.abs(vertices - corners).max() <= off
+    assert ("off its plane" in caplog.text) == (off > 0.001)
 
 
 def test_a_scene_says_who_may_touch_what(tmp_path):
@@ -116,7 +170,7 @@ def test_height_maps_are_made_of_what_is_walkable():
         touch={"table": "palms"},
     )
     heights = rasterise(scene).heights
-    assert set(np.unique(heights[np.isfinite(heights)])) == {0.0, 0.5}
+    assert set(np.unique(heights[np.isfinite(heights)])) == {0.0, 0.5, 1.0}  # the wall's edge
 
 
 @pytest.mark.parametrize(
@@ -130,13 +184,12 @@ def test_height_maps_are_made_of_what_is_walkable():
         ({"touch": {"ceiling": "feet"}}, "'ceiling', which is vertical or looks down"),
         ({"touch": {"floor": "palms"}}, "no surface that feet may touch: touch says 'palms'"),
         ({"surfaces": {"wall": slope(90)}}, "surface 'wall' is vertical; list it as an obstacle"),
-        ({"surfaces": {"roof": slope(180)}}, "surface 'roof' is clockwise seen from above"),
         ({"surfaces": {"steep": slope(70)}}, "'steep' is steeper than 60 degrees; say 'feet'"),
         ({"surfaces": {"wall": [*slope(90), [0.3, 0.5, 0.2]]}}, "surface 'wall' is not"),
     ],
 )
 def test_a_scene_that_contradicts_itself_is_refused(tmp_path, content, problem):
-    surfaces = {"floor": square(), "wall": slope(90), "ceiling": slope(180)}
+    surfaces = {"floor": square(), "wall": slope(90), "ceiling": ceiling()}
     path = tmp_path / "scene.json"
     path.write_text(json.dumps({"surfaces": surfaces, **content}))
     with pytest.raises(InputError, match=problem):

@@ -1,5 +1,8 @@
 """Our PPO loss is Brax's: values and gradients, over batches with ends of every kind."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -13,7 +16,7 @@ from jaxleas.training.brax_blocks import (
     make_ppo_networks,
 )
 from jaxleas.training.config import NetworkConfig
-from jaxleas.training.loss import Experience, advantages, ppo_loss
+from jaxleas.training.loss import Experience, Minibatch, advantages, ppo_loss
 from jaxleas.training.networks import make_networks
 from jaxleas.training.normaliser import initial_normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
@@ -118,7 +121,7 @@ def test_values_and_gradients_are_those_of_brax(seed, activation):
         )
 
     (_, metrics), gradient = jax.value_and_grad(ppo_loss, has_aux=True)(
-        params, ours, last, noise, numbers, mine
+        params, Minibatch(ours, last, noise), numbers, mine
     )
     (_, expected), expected_gradient = jax.value_and_grad(brax, has_aux=True)(params)
     assert metrics.keys() == expected.keys()
@@ -146,9 +149,8 @@ def test_products_in_bfloat16_give_nearly_the_same_gradient():
         network = config.network.model_copy(update={"products": products})
         networks = make_networks(network, SIGNATURE)
         rows = ours.replace(observation=ours.observation.astype(products))
-        return jax.grad(ppo_loss, has_aux=True)(
-            params, rows, last.astype(products), noise, PpoParams.of(config), networks
-        )[0]
+        batch = Minibatch(rows, last.astype(products), noise)
+        return jax.grad(ppo_loss, has_aux=True)(params, batch, PpoParams.of(config), networks)[0]
 
     exact, rough = gradient("float32"), gradient("bfloat16")
     for mine, theirs in zip(jax.tree.leaves(rough), jax.tree.leaves(exact), strict=True):
@@ -196,7 +198,10 @@ def test_advantages_are_the_sum_over_what_was_seen():
                     break
                 weight *= discount * decay
             targets[step, robot] = values[step, robot] + total
-    got, advantage = advantages(values, last, reward, ends == 1, 1.0 * (ends == 2), discount, decay)
+    hyper = SimpleNamespace(discount=discount, gae_lambda=decay, reward_scale=2.0)
+    nothing: Any = None
+    steps = Experience(nothing, nothing, (), 0.5 * reward, 1.0 * (ends == 1), 1.0 * (ends == 2))
+    got, advantage = advantages(steps, values, last, hyper)
     np.testing.assert_allclose(got, targets, atol=1e-5)
     assert np.all(np.asarray(advantage)[ends == 2] == 0.0)
     first = reward[0] - values[0] + discount * targets[1] * (ends[0] != 1)

@@ -9,7 +9,7 @@ from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.guide import write_guide_paths
 from jaxleas.types import GuidePath, InputError
 from jaxleas.viewer.clips import guide_clip, plan_clip, read_guide_clips, read_plan_clip
-from jaxleas.viewer.playback import figure_robot
+from jaxleas.viewer.playback import robot_to_draw
 from tests.contacts.worlds import problem, stones
 
 
@@ -26,7 +26,7 @@ def test_a_guide_path_is_played_at_its_own_times():
     assert clip.duration == pytest.approx(0.8)
     pose, valid = clip.at(0.5)
     assert pose.position == pytest.approx([0.5, 0.0, 0.95])
-    assert pose.yaw == pytest.approx(3.25)  # not the long way round
+    assert pose.yaw == pytest.approx(3.25 - 2 * np.pi)  # not the long way round
     assert valid
     assert not clip.at(0.8)[1]
 
@@ -49,9 +49,9 @@ def test_a_plan_is_played_a_phase_a_second_and_feet_stand_until_they_move():
         [each for each in clip.footholds if each.time <= t < each.until]
         for t in np.arange(0.5, clip.duration)
     ]
-    assert all({each.limb for each in feet} == {"left", "right"} for feet in standing)
+    assert all({each.effector for each in feet} == {"LF", "RF"} for feet in standing)
     assert all(len(feet) == 2 for feet in standing)
-    landed = [each.position for each in clip.footholds[2:]]
+    landed = [each.pose.position for each in clip.footholds[2:]]
     np.testing.assert_allclose(landed, answer.footholds)
 
 
@@ -73,9 +73,9 @@ def test_an_infeasible_plan_shows_where_the_feet_stood():
 def test_the_figure_is_of_the_robot_that_moves():
     asked = problem(stones(0.05))
     clips = [plan_clip("a", asked, plan_mip(asked)), guide_clip("path", straight())]
-    assert figure_robot(clips[1:]).name == "talos"
-    assert figure_robot(clips).name == "talos"
-    assert figure_robot([replace(clips[0], robot="g1")]).name == "g1"
-    assert figure_robot([replace(clips[0], robot="of its own")]).name == "talos"
+    assert robot_to_draw(clips[1:]).name == "talos"
+    assert robot_to_draw(clips).name == "talos"
+    assert robot_to_draw([replace(clips[0], robot="g1")]).name == "g1"
+    assert robot_to_draw([replace(clips[0], robot="of its own")]).name == "talos"
     with pytest.raises(InputError, match="of different robots, talos and g1"):
-        figure_robot([*clips, replace(clips[0], robot="g1")])
+        robot_to_draw([*clips, replace(clips[0], robot="g1")])

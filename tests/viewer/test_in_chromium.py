@@ -14,7 +14,7 @@ import pytest
 from jaxleas.terrain import Scene, write_scene
 from jaxleas.terrain.polygons import box_faces
 from jaxleas.training.policy import write_policy
-from jaxleas.viewer.figure import ROBOTS
+from jaxleas.viewer.robot_shape import ROBOTS
 from tests.browser import chromium, wait_until
 from tests.guide.walkers import homing_policy
 

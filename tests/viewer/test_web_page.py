@@ -18,10 +18,9 @@ from jaxleas.export.commands import export
 from jaxleas.export.write import described
 from jaxleas.guide.commands import walk_queries
 from jaxleas.guide.leas import leas
-from jaxleas.guide.standing import Pose
 from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.terrain.atlas import make_atlas
-from jaxleas.types import InputError, Query, RootMotion
+from jaxleas.types import InputError, Query, RootMotion, RootPose
 from jaxleas.viewer import web_runtime
 from jaxleas.viewer.web_page import page_description, write_page
 from jaxleas.viewer.web_runtime import RUNTIME_FILES, kept_runtime, runtime_folder
@@ -91,7 +90,7 @@ def test_javascript_observes_and_moves_as_the_environment(terrain, tmp_path):
     )
     goal = (place[0] - 3.0, place[1] + 0.4)
     seen, walked = replay(terrain, motion, goal, commands)
-    task = page_description(POLICY.config, ENV.robot, terrain, Pose(np.zeros(3), 0.0))
+    task = page_description(POLICY.config, ENV.robot, terrain, RootPose.from_yaw(np.zeros(3), 0.0))
     answer = in_node(
         {
             "task": task,

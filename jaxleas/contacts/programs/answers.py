@@ -8,7 +8,7 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import PlannerError
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.explanation import explain
-from jaxleas.contacts.programs.linear_program import Outcome
+from jaxleas.contacts.programs.linear_program import SolverStatus
 from jaxleas.contacts.programs.placement import Placement
 from jaxleas.contacts.programs.prefix import last_feasible_phase
 
@@ -38,8 +38,8 @@ def certified(
     worst = certify(problem, plan)
     if not worst.certified:
         raise PlannerError(
-            f"the {planner} planner made a plan that violates {worst.constraint} in phase"
-            f" {worst.phase} by {worst.metres:.3g} m"
+            f"the {planner} planner made a plan that violates {worst.constraint} in step"
+            f" {worst.step} by {worst.metres:.3g} m"
         )
     return plan.but(max_violation=worst.metres)
 
@@ -53,17 +53,17 @@ def late(planner: str, seconds: float, time_limit: float) -> ContactPlan:
 def diagnosed(
     plan: ContactPlan,
     problem: ContactProblem,
-    judge: Callable[[ContactProblem], Outcome | str],
-    dead_phase: int | None,
+    judge: Callable[[ContactProblem], SolverStatus | str],
+    dead_step: int | None,
     deadline: float,
     exact: bool,
 ) -> ContactPlan:
-    """Add the last feasible phase and, where proved, the reason why the next cannot be made."""
-    last = last_feasible_phase(problem, judge, dead_phase)
+    """Add the last feasible step and, where proved, the reason why the next cannot be made."""
+    last = last_feasible_phase(problem, judge, dead_step)
     if last is None:
         return plan.but(reason=f"{plan.reason}; its time ran out before the failing step was found")
     if not exact or time.perf_counter() > deadline:
         return plan.but(
-            last_feasible_phase=last, reason=f"{plan.reason}; it stops before phase {last + 1}"
+            last_feasible_phase=last, reason=f"{plan.reason}; it stops before step {last + 1}"
         )
     return plan.but(last_feasible_phase=last, reason=explain(problem, last + 1, deadline))

@@ -1,6 +1,6 @@
 """The centre of mass, eliminated: displacements between the feet that leave it a place.
 
-c_k0 and c_k1 occur in phase k alone, so that they only constrain the displacement d = p_m -
+c_k0 and c_k1 occur in step k alone, so that they only constrain the displacement d = p_m -
 p_o between the feet: that (p_o + C_o) and (p_m + C_m) intersect, C_o and C_m being where the centre
 of mass may lie from either foot. By Farkas, d must satisfy g . d <= h_o(g) + h_m(-g) for every
 direction g, where h is the support function. Planners start with a few directions and add, for a
@@ -12,50 +12,54 @@ from functools import cache
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.steps import Step, rotation
-from jaxleas.geometry.polytopes import Polytope
-from jaxleas.types.errors import InputError
+from jaxleas.contacts.programs.constraints import StepConstraints, rotation
+from jaxleas.geometry import Polytope
+from jaxleas.types import InputError
 
 DIRECTIONS = 96
 
 
-def with_first_cuts(problem: ContactProblem, steps: list[Step], count: int) -> list[Step]:
+def with_first_cuts(
+    problem: ContactProblem, constraints: list[StepConstraints], count: int
+) -> list[StepConstraints]:
     """Return the steps with those of a fixed set of cuts that cut something off their reach.
 
     Args:
         problem: the contact problem.
-        steps: steps of the problem's phases.
+        constraints: constraints on the problem's steps.
         count: number of steps, from the first, that get cuts: those whose constraints are complete.
     """
     if problem.model != "two_com":
-        return steps
-    poses = foot_yaws(problem, steps)
+        return constraints
+    poses = foot_yaws(problem, constraints)
     cut = [
-        step.with_cuts(*_first_cuts(problem, step, *yaws))
-        for step, yaws in zip(steps[:count], poses, strict=False)
+        constraint.with_cuts(*_first_cuts(problem, constraint, *yaws))
+        for constraint, yaws in zip(constraints[:count], poses, strict=False)
     ]
-    return [*cut, *steps[count:]]
+    return [*cut, *constraints[count:]]
 
 
-def foot_yaws(problem: ContactProblem, steps: list[Step]) -> list[tuple[float, float]]:
-    """Return the yaws [rad] of the standing and of the landing foot in each phase."""
-    phases = zip(steps, problem.phases, strict=True)
-    return [(step.link.yaw, phase.yaw) for step, phase in phases]
+def foot_yaws(
+    problem: ContactProblem, constraints: list[StepConstraints]
+) -> list[tuple[float, float]]:
+    """Return the yaws [rad] of the standing and of the landing foot in each step."""
+    steps = zip(constraints, problem.steps, strict=True)
+    return [(constraint.link.yaw, step.yaw) for constraint, step in steps]
 
 
 def _first_cuts(
-    problem: ContactProblem, step: Step, standing_yaw: float, yaw: float
+    problem: ContactProblem, constraint: StepConstraints, standing_yaw: float, yaw: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    other = step.link.effector
+    other = constraint.link.effector
     directions = _directions()  # in the standing foot's frame
     turned = -directions @ rotation(yaw - standing_yaw)  # in the landing foot's
-    reach = problem.polytopes.reach(step.foot, other).vertices
+    reach = problem.polytopes.reach(constraint.foot, other).vertices
     far = (directions @ reach.T).max(axis=1)
     kept_normals, kept_bounds = [], []
     for over in (0, 1):
         corners = [
             _com_corners(problem, name, number == over)
-            for number, name in enumerate((other, step.foot))
+            for number, name in enumerate((other, constraint.foot))
         ]
         bound = (directions @ corners[0].T).max(axis=1) + (turned @ corners[1].T).max(axis=1)
         cuts = bound < far - 1e-6
@@ -69,7 +73,7 @@ def _com_corners(problem: ContactProblem, name: str, over: bool) -> np.ndarray:
     polytope = problem.polytopes.com[name]
     if not over:
         return polytope.vertices
-    return _corners_over(polytope, problem.foot_half_size)
+    return _corners_over(polytope, problem.half_sizes[name])
 
 
 @cache

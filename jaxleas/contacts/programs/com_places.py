@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
+from jaxleas.contacts.programs.constraints import StepConstraints
 from jaxleas.contacts.programs.linear_program import Program, solve
-from jaxleas.contacts.programs.steps import Step
-from jaxleas.dynamics.small_lp import maximise
+from jaxleas.dynamics import maximise
 
 FITS = 1e-7
 """A place for the centre of mass may violate its constraints by this [m] (certificate: 1e-6)."""
@@ -40,25 +40,26 @@ class _Asked:
 
 
 def place_coms(
-    steps: list[Step],
+    constraints: list[StepConstraints],
     displacements: Float[np.ndarray, "n 3"],
-    half_size: tuple[float, float],
+    half_sizes: Float[np.ndarray, "n 2 2"],
     turns: Float[np.ndarray, "n 2 3 3"],
 ) -> tuple[Float[np.ndarray, "n 2 3"], dict[int, list[Cut]]]:
     """Return places for c_k0 and c_k1, relative to the standing foot, and the cuts of some steps.
 
     Args:
-        steps: steps with their `com`.
+        constraints: constraints on the steps with their `com`.
         displacements: displacement of each landing foot from the standing one [m].
-        half_size: half length and half width of the sole [m].
+        half_sizes: half length and half width of the standing and of the landing sole [m].
         turns: rotations of the standing and of the landing foot.
 
     Returns:
         Places [m], and, by index, the cuts of each step that leaves no place.
     """
-    asked = _assemble(steps, displacements)
+    asked = _assemble(constraints, displacements)
     middles = np.stack([0.0 * displacements, displacements], axis=1).reshape(-1, 3)
-    places, found = _over_soles(asked, middles[:, :2], half_size, turns.reshape(-1, 3, 3))
+    soles = half_sizes.reshape(-1, 1, 2)
+    places, found = _over_soles(asked, middles[:, :2], soles, turns.reshape(-1, 3, 3))
     cuts: dict[int, list[Cut]] = {}
     open_ = np.flatnonzero(~found)
     if len(open_):
@@ -66,13 +67,13 @@ def place_coms(
         for row, place, weights in zip(open_, *_largest_margins(asked, open_, start), strict=True):
             places[row] = place
             if weights is not None:
-                step = steps[row // 2]
-                cuts.setdefault(int(row // 2), []).append(_cut(step.com[row % 2], weights))
+                constraint = constraints[row // 2]
+                cuts.setdefault(int(row // 2), []).append(_cut(constraint.com[row % 2], weights))
     return places.reshape(-1, 2, 3), cuts
 
 
-def _assemble(steps: list[Step], displacements: np.ndarray) -> _Asked:
-    pairs = [pair for step in steps for pair in step.com]
+def _assemble(constraints: list[StepConstraints], displacements: np.ndarray) -> _Asked:
+    pairs = [pair for constraint in constraints for pair in constraint.com]
     sizes = np.array([(len(standing.b), len(landing.b)) for standing, landing in pairs])
     count, longest = len(pairs), int(sizes.sum(axis=1).max())
     A, b = np.zeros((count, longest, 3)), np.ones((count, longest))
@@ -85,10 +86,10 @@ def _assemble(steps: list[Step], displacements: np.ndarray) -> _Asked:
 
 
 def _over_soles(
-    asked: _Asked, middles: np.ndarray, half_size: tuple[float, float], turns: np.ndarray
+    asked: _Asked, middles: np.ndarray, half_sizes: np.ndarray, turns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the place over each sole, of 25, with most vertical room, and whether it is valid."""
-    points = (_OVER_SOLE * half_size) @ turns[:, :2, :2].transpose(0, 2, 1) + middles[:, None]
+    points = (_OVER_SOLE * half_sizes) @ turns[:, :2, :2].transpose(0, 2, 1) + middles[:, None]
     slack = asked.b[:, :, None] - asked.A[:, :, :2] @ points.transpose(0, 2, 1)
     slope = asked.A[:, :, 2, None]
     level = np.abs(slope) <= _FLAT
@@ -164,8 +165,8 @@ def _by_highs(A: np.ndarray, b: np.ndarray, size: int) -> tuple[np.ndarray, np.n
         row_high=b[:size],
     )
     solution = solve(program)
-    if solution.outcome != "optimal":  # numerical trouble: there is an optimum
-        raise ArithmeticError(f"the centre of mass's program ended as '{solution.outcome}'")
+    if solution.status != "optimal":  # numerical trouble: there is an optimum
+        raise ArithmeticError(f"the centre of mass's program ended as '{solution.status}'")
     if solution.x[3] <= FITS:
         return solution.x[:3], None
     return solution.x[:3], np.pad(np.maximum(-solution.duals, 0.0), (0, len(b) - size))

@@ -1,11 +1,11 @@
 """Combinations of surfaces, cheapest first, learning from failures.
 
-When a combination fails, a linear program says which phases are to blame: whatever the others do,
+When a combination fails, a linear program says which steps are to blame: whatever the others do,
 these surfaces together do not work. From then on such combinations are skipped, and of each
-only the neighbours that change one of the phases to blame are visited. That loses none: on the
-way from a combination to one that works, some phase to blame has to change.
+only the neighbours that change one of the steps to blame are visited. That loses none: on the
+way from a combination to one that works, some step to blame has to change.
 
-So a phase that the relaxation decided keeps its surface until a failure blames it.
+So a step that the relaxation decided keeps its surface until a failure blames it.
 """
 
 import heapq
@@ -19,7 +19,7 @@ MOST_PASSED_OVER = 200_000
 
 
 class Combinations:
-    """One surface per phase, cheapest sum of slacks first.
+    """One surface per step, cheapest sum of slacks first.
 
     Attributes:
         exhausted: whether every combination has been yielded or refuted.
@@ -30,10 +30,10 @@ class Combinations:
         candidates: list[tuple[str, ...]],
         slack: tuple[Float[np.ndarray, " c"], ...],
     ) -> None:
-        """Sort the candidates of each phase.
+        """Sort the candidates of each step.
 
         Args:
-            candidates: candidates of each phase.
+            candidates: candidates of each step.
             slack: distance of the relaxed foothold from each of them [m].
         """
         self._options: list[list[tuple[float, str]]] = []
@@ -60,25 +60,25 @@ class Combinations:
                 )
             self._look_at_neighbours(cost)
 
-    def refute(self, phases: tuple[int, ...]) -> None:
-        """Record that the last combination fails because of its surfaces in these phases."""
-        ranks = tuple(self._now[phase] for phase in phases)
-        self._refuted.setdefault(phases, set()).add(ranks)
+    def refute(self, steps: tuple[int, ...]) -> None:
+        """Record that the last combination fails because of its surfaces in these steps."""
+        ranks = tuple(self._now[step] for step in steps)
+        self._refuted.setdefault(steps, set()).add(ranks)
 
     def _to_change(self) -> tuple[int, ...] | None:
-        """Return phases of which one must change; None if nothing is refuted."""
-        for phases, refuted in self._refuted.items():
-            if tuple(self._now[phase] for phase in phases) in refuted:
-                return phases
+        """Return steps of which one must change; None if nothing is refuted."""
+        for steps, refuted in self._refuted.items():
+            if tuple(self._now[step] for step in steps) in refuted:
+                return steps
         return None
 
     def _look_at_neighbours(self, cost: float) -> None:
         blamed = self._to_change()
-        if blamed is None:  # it was tried without a refutation: any phase may be to blame
+        if blamed is None:  # it was tried without a refutation: any step may be to blame
             blamed = tuple(range(len(self._options)))
-        for phase in blamed:
-            options, rank = self._options[phase], self._now[phase] + 1
-            following = (*self._now[:phase], rank, *self._now[phase + 1 :])
+        for step in blamed:
+            options, rank = self._options[step], self._now[step] + 1
+            following = (*self._now[:step], rank, *self._now[step + 1 :])
             if rank < len(options) and following not in self._seen:
                 self._seen.add(following)
                 more = options[rank][0] - options[rank - 1][0]

@@ -9,11 +9,11 @@ import numpy as np
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.attempt import search
 from jaxleas.contacts.programs.com import with_first_cuts
-from jaxleas.contacts.programs.linear_program import Outcome, solve
+from jaxleas.contacts.programs.constraints import Family, StepConstraints, make_constraints
+from jaxleas.contacts.programs.linear_program import SolverStatus, solve
 from jaxleas.contacts.programs.mixed_integer import Formulation, assemble, chosen_surfaces
 from jaxleas.contacts.programs.placement import Placement, Targets, place
 from jaxleas.contacts.programs.pruning import prune
-from jaxleas.contacts.programs.steps import Family, Step, make_steps
 
 SEARCH_SHARE = 0.8
 """Share of the remaining time for the search for surfaces at least cost; the placement gets the
@@ -29,17 +29,17 @@ class Decision:
     """The answer, with the plan if there is one.
 
     Attributes:
-        outcome: "optimal" for a plan, "infeasible" for proof that there is none.
-        surfaces: surface of each phase.
+        status: "optimal" for a plan, "infeasible" for proof that there is none.
+        surfaces: surface of each step.
         placement: footholds and centre of mass.
-        dead_phase: where infeasible, a phase that certainly cannot be made, if pruning found one.
+        dead_step: where infeasible, a step that certainly cannot be made, if pruning found one.
         programs: number of mixed-integer programs solved.
     """
 
-    outcome: Outcome
+    status: SolverStatus
     surfaces: tuple[str, ...] = ()
     placement: Placement | None = None
-    dead_phase: int | None = None
+    dead_step: int | None = None
     programs: int = 0
 
 
@@ -59,49 +59,51 @@ def decide(
         formulation: formulation of the mixed-integer program.
         targets: targets of the footholds; a quadratic cost is minimised on the surfaces that the
             linear one chose, since HiGHS takes no quadratic cost with integers (as in T 5.2.3).
-        relaxed: amount by which the last phase may violate each family of constraints [m].
+        relaxed: amount by which the last step may violate each family of constraints [m].
         start: whether to try SL1M's first few combinations before any mixed-integer program
             (without cost).
     """
     complete = len(problem) - (1 if relaxed else 0)
-    steps = with_first_cuts(problem, make_steps(problem, relaxed), complete)
-    candidates = prune(problem, steps)
+    constraints = with_first_cuts(problem, make_constraints(problem, relaxed), complete)
+    candidates = prune(problem, constraints)
     dead = next((index for index, names in enumerate(candidates) if not names), None)
     if dead is not None:
-        return Decision("infeasible", dead_phase=dead)
+        return Decision("infeasible", dead_step=dead)
     if targets is None and start:
-        found = search(problem, steps, candidates, deadline, START_COMBINATIONS)
+        found = search(problem, constraints, candidates, deadline, START_COMBINATIONS)
         if found.placement is not None:
             return Decision("optimal", found.surfaces, found.placement)
-        if found.outcome in ("infeasible", "time_limit"):
-            return Decision("infeasible" if found.outcome == "infeasible" else "time_limit")
-        steps = found.steps
+        if found.status in ("infeasible", "time_limit"):
+            return Decision("infeasible" if found.status == "infeasible" else "time_limit")
+        constraints = found.constraints
     failed: list[tuple[str, ...]] = []
     programs = 0
     while True:
-        surfaces, outcome = tuple(names[0] for names in candidates), "optimal"
+        surfaces, status = tuple(names[0] for names in candidates), "optimal"
         if targets is not None or any(len(names) > 1 for names in candidates):
-            program, choices = assemble(problem, steps, candidates, formulation, targets, failed)
+            program, choices = assemble(
+                problem, constraints, candidates, formulation, targets, failed
+            )
             programs += 1
             left = deadline - time.perf_counter()
             solution = solve(program, left if targets is None else SEARCH_SHARE * left)
-            outcome = solution.outcome
-            if outcome == "optimal":
+            status = solution.status
+            if status == "optimal":
                 surfaces = chosen_surfaces(solution.x, choices, candidates)
         elif failed:
-            outcome = "infeasible"
-        if outcome != "optimal":
-            return Decision(outcome, programs=programs)
-        placement = place(problem, steps, surfaces, deadline, targets)
-        if placement.outcome == "optimal":
+            status = "infeasible"
+        if status != "optimal":
+            return Decision(status, programs=programs)
+        placement = place(problem, constraints, surfaces, deadline, targets)
+        if placement.status == "optimal":
             return Decision("optimal", surfaces, placement, programs=programs)
-        if placement.outcome != "infeasible":
-            return Decision(placement.outcome, programs=programs)
-        if cuts_of(placement.steps) == cuts_of(steps):
+        if placement.status != "infeasible":
+            return Decision(placement.status, programs=programs)
+        if cuts_of(placement.constraints) == cuts_of(constraints):
             failed.append(surfaces)  # within the solver's tolerance only
-        steps = placement.steps
+        constraints = placement.constraints
 
 
-def cuts_of(steps: list[Step]) -> int:
+def cuts_of(constraints: list[StepConstraints]) -> int:
     """Return the number of rows of all steps."""
-    return sum(step.size for step in steps)
+    return sum(constraint.size for constraint in constraints)

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.programs.constraints import Family
 from jaxleas.contacts.programs.decision import decide
-from jaxleas.contacts.programs.linear_program import Outcome
-from jaxleas.contacts.programs.steps import Family
+from jaxleas.contacts.programs.linear_program import SolverStatus
 from jaxleas.contacts.surfaces import ContactSurface
 
 WORDS = {
@@ -37,16 +37,16 @@ class Blame:
     in_time: bool = True
 
 
-def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> str:
-    """Return a sentence on why `phase` is the first step that cannot be made.
+def explain(problem: ContactProblem, step: int, deadline: float = np.inf) -> str:
+    """Return a sentence on why `step` is the first step that cannot be made.
 
     Args:
-        problem: problem whose phases before `phase` can be made.
-        phase: index of the first phase that cannot be made.
+        problem: problem whose steps before `step` can be made.
+        step: index of the first step that cannot be made.
         deadline: time by `time.perf_counter` after which to stop [s].
     """
-    failing = problem.phases[phase]
-    blame = find_blame(problem.prefix(phase + 1), deadline)
+    failing = problem.steps[step]
+    blame = find_blame(problem.prefix(step + 1), deadline)
     allowed = list(dict.fromkeys(problem.whole(name) for name in failing.candidates))
     names = ", ".join(f"'{name}'" for name in allowed[:6])
     more = len(allowed) - 6
@@ -58,8 +58,8 @@ def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> st
     if blame.surface in allowed:
         helps.append(f"onto another part of '{blame.surface}' than its candidate")
     elif blame.surface:
-        helps.append(f"onto '{blame.surface}', which is none of its candidates")
-    sentence = f"phase {phase} ({failing.foot} onto {where}) is the first step that cannot be made"
+        helps.append(f"onto '{blame.surface}', which is not among its candidates")
+    sentence = f"step {step} ({failing.foot} onto {where}) is the first step that cannot be made"
     end = "" if blame.in_time else "; the time ran out before all that would help was found"
     if helps:
         return f"{sentence}; it could be made {', or '.join(helps)}{end}"
@@ -69,10 +69,10 @@ def explain(problem: ContactProblem, phase: int, deadline: float = np.inf) -> st
 
 
 def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
-    """Relax each family of constraints, in the last phase alone, until the phases can be made.
+    """Relax each family of constraints, in the last step alone, until the steps can be made.
 
     Args:
-        prefix: problem of which all but the last phase can be made.
+        prefix: problem of which all but the last step can be made.
         deadline: time by `time.perf_counter` after which to stop [s].
     """
     families: tuple[Family, ...] = ("step",)
@@ -80,29 +80,29 @@ def find_blame(prefix: ContactProblem, deadline: float = np.inf) -> Blame:
         families = ("step", "com_reach", "com_over")
     late = False
 
-    def outcome(problem: ContactProblem, relaxed: dict[Family, float] | None = None) -> Outcome:
+    def status(problem: ContactProblem, relaxed: dict[Family, float] | None = None) -> SolverStatus:
         nonlocal late
-        found = decide(problem, deadline, relaxed=relaxed).outcome
+        found = decide(problem, deadline, relaxed=relaxed).status
         late = late or found == "time_limit"
         return found
 
     short = {}
     for family in families:
-        short[family] = _least(lambda metres, f=family: outcome(prefix, {f: metres}))
-    short["edges"] = _least(lambda metres: outcome(with_wider(prefix, metres)))
+        short[family] = _least(lambda metres, f=family: status(prefix, {f: metres}))
+    short["edges"] = _least(lambda metres: status(with_wider(prefix, metres)))
     if len(families) > 1 and all(short[family] is None for family in families):
-        short["together"] = _least(lambda metres: outcome(prefix, dict.fromkeys(families, metres)))
+        short["together"] = _least(lambda metres: status(prefix, dict.fromkeys(families, metres)))
     surface = _other_surface(prefix, deadline)
     found = {family: metres for family, metres in short.items() if metres is not None}
     return Blame(found, surface, not late)
 
 
-def _least(outcome: Callable[[float], Outcome]) -> float | None:
+def _least(status: Callable[[float], SolverStatus]) -> float | None:
     """Return the smallest amount of the ladder that suffices, by bisection."""
     failed, enough = -1, len(LADDER)
     while enough - failed > 1:
         middle = (failed + enough) // 2 if enough < len(LADDER) else len(LADDER) - 1
-        answer = outcome(LADDER[middle])
+        answer = status(LADDER[middle])
         if answer == "optimal":
             enough = middle
         elif middle == len(LADDER) - 1:
@@ -116,21 +116,21 @@ def _least(outcome: Callable[[float], Outcome]) -> float | None:
 
 def _other_surface(prefix: ContactProblem, deadline: float) -> str:
     others = tuple(
-        name for name in prefix.whole_surfaces if name not in prefix.phases[-1].candidates
+        name for name in prefix.whole_surfaces if name not in prefix.steps[-1].candidates
     )
     if not others:
         return ""
-    before = [phase.candidates for phase in prefix.phases[:-1]]
+    before = [step.candidates for step in prefix.steps[:-1]]
     return next(iter(decide(prefix.with_candidates([*before, others]), deadline).surfaces[-1:]), "")
 
 
 def with_wider(problem: ContactProblem, metres: float) -> ContactProblem:
-    """Return the problem with every edge of the last phase's candidates moved outwards [m]."""
+    """Return the problem with every edge of the last step's candidates moved outwards [m]."""
     surfaces, names = dict(problem.surfaces), []
-    for name in problem.phases[-1].candidates:
+    for name in problem.steps[-1].candidates:
         names.append(f"{name} widened")
         surfaces[names[-1]] = _widened(problem.surfaces[name], metres)
-    before = [phase.candidates for phase in problem.phases[:-1]]
+    before = [step.candidates for step in problem.steps[:-1]]
     return replace(problem, surfaces=surfaces).with_candidates([*before, tuple(names)])
 
 

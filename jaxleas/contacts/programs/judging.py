@@ -2,13 +2,14 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from jaxleas.contacts.from_guide import (
     MOST_ASIDE,
     NoGroundError,
+    Stepping,
     kept_configurations,
     problem_from_guide,
 )
@@ -16,18 +17,18 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import PlannerError, mean_step
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.prefix import last_feasible_phase
-from jaxleas.contacts.programs.settings import PhaseSettings
+from jaxleas.contacts.programs.settings import ProgramSettings
 from jaxleas.contacts.reference import widest_reference
 from jaxleas.robots import load_robot
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
+from jaxleas.terrain import Scene
+from jaxleas.types import NO_MEASURES, Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
 
 Program = Callable[[ContactProblem, float], ContactPlan]
 """Plans a problem within a time limit [s], without looking for reasons."""
 
 
 def judge_by_program(
-    asked: tuple[int, Scene, GuidePath], robot: str, settings: PhaseSettings, program: Program
+    asked: tuple[int, Scene, GuidePath], robot: str, settings: ProgramSettings, program: Program
 ) -> Verdict:
     """Ask a program about one guide path.
 
@@ -48,32 +49,34 @@ def judge_by_program(
     number, scene, path = asked
     near = _around(robot, scene, path, settings.window)
     problem, lost = _problem(robot, near, path, settings)
+    stop = None if lost is None else _Stop("no_start" if lost.step < 0 else "no_ground", str(lost))
     if problem is None or len(path) == 1:
-        steps = -1 if lost is not None and lost.phase < 0 else 0
-        reason = "" if lost is None else str(lost)
-        verdict = _verdict(number, path, settings, steps, begun, None, reason)
-        return replace(verdict, success=not reason)
+        steps = -1 if lost is not None and lost.step < 0 else 0
+        return _verdict(_progress(number, path, settings, steps), stop, begun, NO_MEASURES)
     search = _Search(problem, program, begun, settings.time_limit)
     first = search.plan(len(problem))
-    decided, reason = True, ""
+    measures = NO_MEASURES
     if first is None:
-        decided, reason = False, search.trouble
-    elif not first.feasible:
-        last = last_feasible_phase(problem, search.outcome)
-        if last is None:
-            decided, reason = False, search.trouble
-        else:
-            reason = _reason(problem, last + 1, first)
-    elif lost is not None:
-        reason = str(lost)
-    verdict = _verdict(number, path, settings, search.made, begun, first, reason)
-    return replace(verdict, decided=decided, success=decided and not reason)
+        stop = search.trouble
+    else:
+        measures = PlannerMeasures(undecided=first.undecided, combinations=first.combinations)
+        if not first.feasible:
+            last = last_feasible_phase(problem, search.status)
+            stop = search.trouble if last is None else _first_not_made(problem, last + 1, first)
+    return _verdict(_progress(number, path, settings, search.made), stop, begun, measures)
+
+
+class _Stop(NamedTuple):
+    """Why a path was not followed to its end, as a value and as a sentence."""
+
+    cause: Cause
+    reason: str
 
 
 class _Search:
     """Plans for various prefixes of a problem, within one time limit.
 
-    `made` counts the phases of the longest prefix that has a certified plan.
+    `made` counts the steps of the longest prefix that has a certified plan.
     """
 
     def __init__(
@@ -81,60 +84,58 @@ class _Search:
     ) -> None:
         self.problem, self.program = problem, program
         self.deadline, self.time_limit = begun + time_limit, time_limit
-        self.made, self.trouble = 0, ""
+        self.made = 0
+        self.trouble: _Stop | None = None
 
-    def plan(self, phases: int) -> ContactPlan | None:
-        """Plan for the first phases; return None, and set `trouble`, if that is not decided."""
+    def plan(self, steps: int) -> ContactPlan | None:
+        """Plan for the first steps; return None, and set `trouble`, if that is not decided."""
         left = max(self.deadline - time.perf_counter(), 1e-3)
         try:
-            plan = self.program(self.problem.prefix(phases), left)
+            plan = self.program(self.problem.prefix(steps), left)
         except PlannerError as error:
-            self.trouble = f"the planner failed: {error}"
+            self.trouble = _Stop("planner_failed", f"the planner failed: {error}")
             return None
         if plan.status == "time_limit":
-            self.trouble = f"not decided within the time limit of {self.time_limit:g} s"
+            limit = f"not decided within the time limit of {self.time_limit:g} s"
+            self.trouble = _Stop("time_limit", limit)
             return None
         if plan.feasible:
-            self.made = max(self.made, phases)
+            self.made = max(self.made, steps)
         return plan
 
-    def outcome(self, prefix: ContactProblem) -> str:
+    def status(self, prefix: ContactProblem) -> str:
         """Answer one question of the binary search."""
         plan = self.plan(len(prefix))
         return "failed" if plan is None else "optimal" if plan.feasible else "infeasible"
 
 
 def _problem(
-    robot: str, scene: Scene, path: GuidePath, settings: PhaseSettings
+    robot: str, scene: Scene, path: GuidePath, settings: ProgramSettings
 ) -> tuple[ContactProblem | None, NoGroundError | None]:
     """Return the problem of the part of the path that has ground, and the error that ends it."""
-    options = {
-        "robot": robot,
-        "model": settings.model,
-        "every": settings.keep_every,
-        "candidates": settings.candidates,
-        "window": settings.window,
-        "first_foot": _first_foot(robot, settings),
-    }
+    stepping = Stepping(
+        model=settings.model,
+        every=settings.keep_every,
+        candidates=settings.candidates,
+        window=settings.window,
+        first_foot=_first_foot(robot, settings),
+    )
     try:
         if len(path) == 1:  # no step to make, but a place to stand on is needed
             path = path[np.array([0, 0])]
-        return problem_from_guide(path, scene, **options), None
+        return problem_from_guide(path, scene, robot, stepping), None
     except NoGroundError as error:
-        if error.phase < 1:
+        if error.step < 1:
             return None, error
-        last = kept_configurations(len(path), settings.keep_every)[error.phase - 1]
-        return problem_from_guide(path[: last + 1], scene, **options), error
+        last = kept_configurations(len(path), settings.keep_every)[error.step - 1]
+        return problem_from_guide(path[: last + 1], scene, robot, stepping), error
 
 
-def _first_foot(robot: str, settings: PhaseSettings) -> str | None:
-    """Return the foot that moves first: of a robot without the default one, its first foot."""
-    names = [each.name for each in load_robot(robot).effectors]
-    return settings.first_foot if settings.first_foot in names or _is_set(settings) else None
-
-
-def _is_set(settings: PhaseSettings) -> bool:
-    return settings.first_foot != type(settings).model_fields["first_foot"].default
+def _first_foot(robot: str, settings: ProgramSettings) -> str | None:
+    """Return the foot that moves first; None for the robot's first, where it lacks the default."""
+    is_stated = "first_foot" in settings.model_fields_set
+    has_foot = settings.first_foot in load_robot(robot).foot_names
+    return settings.first_foot if is_stated or has_foot else None
 
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
@@ -152,40 +153,34 @@ def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     return Scene(near or scene.walkable, touch=dict.fromkeys(near or scene.walkable, "feet"))
 
 
-def _reason(problem: ContactProblem, phase: int, plan: ContactPlan) -> str:
-    step = problem.phases[phase]
+def _first_not_made(problem: ContactProblem, number: int, plan: ContactPlan) -> _Stop:
+    step = problem.steps[number]
     names = ", ".join(f"'{name}'" for name in step.candidates[:4])
     more = f" and {len(step.candidates) - 4} more" if len(step.candidates) > 4 else ""
-    proof = "" if plan.status == "infeasible" else f" ({plan.reason})"
-    return f"step {phase} ({step.foot} onto {names}{more}) is the first not made{proof}"
+    sentence = f"step {number} ({step.foot} onto {names}{more}) is the first not made"
+    if plan.status == "infeasible":
+        return _Stop("infeasible", sentence)
+    return _Stop("not_found", f"{sentence} ({plan.reason})")
 
 
-def _verdict(
-    number: int,
-    path: GuidePath,
-    settings: PhaseSettings,
-    steps: int,
-    begun: float,
-    plan: ContactPlan | None,
-    reason: str,
-) -> Verdict:
-    """Return a failure after a number of steps; -1 stands for a path without a start."""
+def _progress(number: int, path: GuidePath, settings: ProgramSettings, steps: int) -> PathProgress:
+    """Return the part of a path followed by a number of steps; -1 for a path without a start."""
     kept = [0, *kept_configurations(len(path), settings.keep_every)][: len(path)]
     last = kept[steps] if steps >= 0 else -1
-    return Verdict(
+    return PathProgress(
         path=number,
-        decided=True,
-        success=False,
-        last_index=last,
         length=len(path),
+        last_index=last,
         reached=(steps + 1) / len(kept),
         steps=max(steps, 0),
         mean_step=mean_step(path, last, steps),
-        repositions=None,
-        least_robustness=None,
-        mean_robustness=None,
-        undecided=None if plan is None else plan.undecided,
-        combinations=None if plan is None else plan.combinations,
-        reason=reason,
-        seconds=time.perf_counter() - begun,
     )
+
+
+def _verdict(
+    progress: PathProgress, stop: _Stop | None, begun: float, measures: PlannerMeasures
+) -> Verdict:
+    seconds = time.perf_counter() - begun
+    if stop is None:
+        return Verdict.succeeded(progress, seconds, measures)
+    return Verdict.stopped(progress, stop.cause, stop.reason, seconds, measures)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy import sparse
 
-Outcome = Literal["optimal", "infeasible", "time_limit", "failed"]
+SolverStatus = Literal["optimal", "infeasible", "time_limit", "failed"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +39,12 @@ class Solution:
     """The result from HiGHS.
 
     Attributes:
-        outcome: "failed" means numerical trouble; "optimal" is within `GAP` for integer programs.
+        status: "failed" means numerical trouble; "optimal" is within `GAP` for integer programs.
         x: values of the variables; meaningful when optimal.
         duals: duals of the rows.
     """
 
-    outcome: Outcome
+    status: SolverStatus
     x: Float[np.ndarray, " n"]
     duals: Float[np.ndarray, " m"] = field(default_factory=lambda: np.zeros(0))
 
@@ -80,15 +80,15 @@ def solve(program: Program, time_limit: float = np.inf) -> Solution:
         highs.setOptionValue("dual_feasibility_tolerance", 1e-8)
     _pass(program, highs)
     highs.run()
-    outcome = _OUTCOMES.get(highs.getModelStatus(), "failed")
+    status = _STATUSES.get(highs.getModelStatus(), "failed")
     solution = highs.getSolution()
-    if is_mip and outcome == "time_limit" and highs.getInfo().primal_solution_status == _FEASIBLE:
-        outcome = "optimal"
-    return Solution(outcome, np.array(solution.col_value), np.array(solution.row_dual))
+    if is_mip and status == "time_limit" and highs.getInfo().primal_solution_status == _FEASIBLE:
+        status = "optimal"
+    return Solution(status, np.array(solution.col_value), np.array(solution.row_dual))
 
 
 _FEASIBLE = int(highspy.SolutionStatus.kSolutionStatusFeasible)
-_OUTCOMES: dict[highspy.HighsModelStatus, Outcome] = {
+_STATUSES: dict[highspy.HighsModelStatus, SolverStatus] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
     highspy.HighsModelStatus.kInfeasible: "infeasible",
     highspy.HighsModelStatus.kUnboundedOrInfeasible: "infeasible",

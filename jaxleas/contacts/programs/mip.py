@@ -16,8 +16,7 @@ from jaxleas.contacts.programs.placement import Targets
 from jaxleas.contacts.programs.settings import Cost, MipPlanSettings, MipSettings
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.robots import load_robot
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 
 class Mip(Planner):
@@ -62,15 +61,15 @@ def plan_mip(
     Args:
         problem: the contact problem; `problem.without_guide()` for contact-before-motion.
         cost: "none": any plan, with distance to spare; else footholds near the reference ones
-            beside the guide's root, by L1 or squared distance [m]; needs a root in each phase.
+            beside the guide's root, by L1 or squared distance [m]; needs a root in each step.
         time_limit: time limit [s]; when it is over, the plan's status says "time_limit".
-        diagnose: whether to find the last feasible phase and the reason for an infeasible problem.
+        diagnose: whether to find the last feasible step and the reason for an infeasible problem.
         formulation: "big_m" (T 5.3, 5.4), or "hull", slower but without any big-M.
         start: whether to try SL1M's first combinations before the mixed-integer program: faster,
             and as exact.
 
     Raises:
-        InputError: a cost is requested, but the phases have no root.
+        InputError: a cost is requested, but the steps have no root.
         PlannerError: a bug of ours.
     """
     require_time_limit(time_limit)
@@ -81,22 +80,22 @@ def plan_mip(
     seconds = time.perf_counter() - begin
     if decision.placement is not None:
         return certified("mip", problem, decision.surfaces, decision.placement, seconds)
-    if decision.outcome == "time_limit":
+    if decision.status == "time_limit":
         return late("mip", seconds, time_limit)
-    if decision.outcome == "failed":
+    if decision.status == "failed":
         raise PlannerError("the mixed-integer solver gave no answer")
     plan = ContactPlan("mip", False, "infeasible", "no choice of surfaces works", seconds=seconds)
     if not diagnose:
         return plan
-    judge = lambda prefix: decide(prefix, deadline, formulation).outcome  # noqa: E731
-    plan = diagnosed(plan, problem, judge, decision.dead_phase, deadline, exact=True)
+    judge = lambda prefix: decide(prefix, deadline, formulation).status  # noqa: E731
+    plan = diagnosed(plan, problem, judge, decision.dead_step, deadline, exact=True)
     return plan.but(seconds=time.perf_counter() - begin)
 
 
 def _reference_footholds(problem: ContactProblem, cost: Cost) -> Targets:
     robot, points = load_robot(problem.robot), []
-    for index, phase in enumerate(problem.phases):
-        if phase.root is None:
-            raise InputError(f"phase {index} has no root, which a cost needs: ask for cost 'none'")
-        points.append(reference_foothold(robot, phase.foot, phase.root, phase.yaw)[:2])
+    for index, step in enumerate(problem.steps):
+        if step.root is None:
+            raise InputError(f"step {index} has no root, which a cost needs: ask for cost 'none'")
+        points.append(reference_foothold(robot, step.foot, step.root, step.yaw)[:2])
     return Targets(np.array(points), "quadratic" if cost == "quadratic" else "linear")

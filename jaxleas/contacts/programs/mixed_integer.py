@@ -1,4 +1,4 @@
-"""The mixed-integer program of T app. B.2, assembled: one surface per phase, footholds on it."""
+"""The mixed-integer program of T app. B.2, assembled: one surface per step, footholds on it."""
 
 from typing import Literal
 
@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.programs.constraints import INITIAL, StepConstraints
 from jaxleas.contacts.programs.linear_program import Program, Rows
 from jaxleas.contacts.programs.placement import Targets
-from jaxleas.contacts.programs.steps import INITIAL, Step
 
 Formulation = Literal["hull", "big_m"]
 LOOSER, SPARE = 1.5, 0.05
@@ -19,7 +19,7 @@ Candidates = list[tuple[str, ...]]
 
 def assemble(
     problem: ContactProblem,
-    steps: list[Step],
+    constraints: list[StepConstraints],
     candidates: Candidates,
     formulation: Formulation,
     targets: Targets | None = None,
@@ -28,35 +28,35 @@ def assemble(
     """Build the program.
 
     "hull": p_k = sum_jv l_jv V_jv, sum_v l_jv = z_j, sum_j z_j = 1, l >= 0, z binary: the convex
-    hull of each phase's candidates, hence the tightest relaxation of the choice. "big_m" (T 5.3,
+    hull of each step's candidates, hence the tightest relaxation of the choice. "big_m" (T 5.3,
     5.4): S_j p <= s_j + M (1 - z_j), |d_j . p - e_j| <= M (1 - z_j), each M the most by which a
     corner of another candidate violates the row.
 
     Args:
         problem: the contact problem.
-        steps: steps of the problem's phases, with cuts.
-        candidates: candidates of each phase, pruned; none is empty.
+        constraints: constraints on the problem's steps, with cuts.
+        candidates: candidates of each step, pruned; none is empty.
         formulation: form of the constraint "p lies on surface j".
         targets: places to minimise the L1 distance to; None: any feasible point.
         excluded: choices of surfaces that are known to fail.
 
     Returns:
-        The program, and the columns of each phase's choice variables (empty where there is one
+        The program, and the columns of each step's choice variables (empty where there is one
         candidate).
     """
     sizes = [_columns(problem, names, formulation) for names in candidates]
     starts = np.cumsum([0, *sizes])
-    extra = 0 if targets is None else 2 * len(steps)
+    extra = 0 if targets is None else 2 * len(constraints)
     total = int(starts[-1]) + extra
     rows, low, high = Rows(total), np.full(total, -np.inf), np.full(total, np.inf)
     integer, choices = np.zeros(total, bool), []
-    for index, (step, names) in enumerate(zip(steps, candidates, strict=True)):
+    for index, (constraint, names) in enumerate(zip(constraints, candidates, strict=True)):
         begin = int(starts[index])
         add = _add_hull if formulation == "hull" else _add_big_m
         chosen = add(problem, names, rows, begin, low)
         low[chosen], high[chosen], integer[chosen] = 0.0, 1.0, True
         choices.append(chosen)
-        add_step(problem, step, rows, begin, starts)
+        add_constraint(problem, constraint, rows, begin, starts)
     cost = np.zeros(total)
     if targets is not None:
         cost[int(starts[-1]) :] = 1.0
@@ -70,7 +70,7 @@ def assemble(
 def chosen_surfaces(
     x: Float[np.ndarray, " n"], choices: list[np.ndarray], candidates: Candidates
 ) -> tuple[str, ...]:
-    """Return the surface of each phase in a solution."""
+    """Return the surface of each step in a solution."""
     return tuple(
         names[int(np.argmax(x[columns]))] if len(columns) else names[0]
         for columns, names in zip(choices, candidates, strict=True)
@@ -127,19 +127,19 @@ def _add_big_m(
     return chosen
 
 
-def add_step(
-    problem: ContactProblem, step: Step, rows: Rows, begin: int, starts: np.ndarray
+def add_constraint(
+    problem: ContactProblem, constraint: StepConstraints, rows: Rows, begin: int, starts: np.ndarray
 ) -> None:
     """Add A (p_m - p_o) <= b for each foot o that stands.
 
     Args:
         problem: the contact problem.
-        step: step of the phase.
+        constraint: constraints on the step.
         rows: rows to append to.
         begin: column of p_m's first coordinate.
-        starts: the same column for every phase.
+        starts: the same column for every step.
     """
-    for link in step.links:
+    for link in constraint.links:
         blocks, bound = [(begin + np.arange(3), link.A)], link.b
         if link.standing == INITIAL:
             bound = bound + link.A @ problem.initial[link.effector].position
@@ -160,7 +160,7 @@ def _add_targets(rows: Rows, starts: np.ndarray, targets: Targets) -> None:
 def _exclude(
     rows: Rows, candidates: Candidates, choices: list[np.ndarray], surfaces: tuple[str, ...]
 ) -> None:
-    """Require that at least one phase chooses another surface."""
+    """Require that at least one step chooses another surface."""
     columns = [
         chosen[names.index(name)]
         for names, chosen, name in zip(candidates, choices, surfaces, strict=True)

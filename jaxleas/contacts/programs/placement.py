@@ -11,10 +11,10 @@ from scipy import sparse
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.com import foot_yaws
 from jaxleas.contacts.programs.com_places import place_coms
+from jaxleas.contacts.programs.constraints import INITIAL, Link, StepConstraints, rotation
 from jaxleas.contacts.programs.least_distance import least_distance
-from jaxleas.contacts.programs.linear_program import Outcome, Program, Rows, Solution, solve
-from jaxleas.contacts.programs.steps import INITIAL, Link, Step, rotation
-from jaxleas.types.errors import InputError
+from jaxleas.contacts.programs.linear_program import Program, Rows, Solution, SolverStatus, solve
+from jaxleas.types import InputError
 
 MOST_MARGIN = 0.02
 """Greatest distance to spare that the program aims for [m]."""
@@ -30,16 +30,16 @@ class Placement:
     """Footholds on given surfaces, or the result that there are none.
 
     Attributes:
-        outcome: "optimal" when there are footholds, "infeasible" when there are provably none.
-        steps: steps as given, with the cuts that were found on the way.
-        footholds: foothold of each phase [m].
-        com: places of the centre of mass in each phase [m]; None for the model "feet".
-        blamed: where infeasible, phases whose surfaces together are impossible, whatever the
+        status: "optimal" when there are footholds, "infeasible" when there are provably none.
+        constraints: constraints on the steps as given, with the cuts that were found on the way.
+        footholds: foothold of each step [m].
+        com: places of the centre of mass in each step [m]; None for the model "feet".
+        blamed: where infeasible, steps whose surfaces together are impossible, whatever the
             surfaces of the others.
     """
 
-    outcome: Outcome
-    steps: list[Step]
+    status: SolverStatus
+    constraints: list[StepConstraints]
     footholds: Float[np.ndarray, "n 3"] | None = None
     com: Float[np.ndarray, "n 2 3"] | None = None
     blamed: tuple[int, ...] = ()
@@ -50,7 +50,7 @@ class Targets:
     """Places that footholds should be near, horizontally.
 
     Attributes:
-        points: x, y of the target of each phase [m].
+        points: x, y of the target of each step [m].
         cost: "linear": sum of |x - x'| + |y - y'|; "quadratic": sum of squared distances.
     """
 
@@ -60,7 +60,7 @@ class Targets:
 
 def place(
     problem: ContactProblem,
-    steps: list[Step],
+    constraints: list[StepConstraints],
     surfaces: tuple[str, ...],
     deadline: float = np.inf,
     targets: Targets | None = None,
@@ -69,24 +69,24 @@ def place(
 
     Args:
         problem: the contact problem.
-        steps: steps from `make_steps`, with or without cuts.
-        surfaces: name of the surface of each phase.
+        constraints: constraints on the steps from `make_constraints`, with or without cuts.
+        surfaces: name of the surface of each step.
         deadline: time by `time.perf_counter` after which to stop [s].
         targets: places to minimise the distance to; None: maximise the least slack.
     """
     for _ in range(MAX_ROUNDS):
-        outcome, footholds, blamed = _place_feet(problem, steps, surfaces, deadline, targets)
+        status, footholds, blamed = _place_feet(problem, constraints, surfaces, deadline, targets)
         if footholds is None:
-            return Placement(outcome, steps, blamed=blamed)
-        com, steps, found = put_com(problem, steps, footholds)
+            return Placement(status, constraints, blamed=blamed)
+        com, constraints, found = put_com(problem, constraints, footholds)
         if not found:
-            return Placement("optimal", steps, footholds, com)
-    return Placement("failed", steps)
+            return Placement("optimal", constraints, footholds, com)
+    return Placement("failed", constraints)
 
 
 def put_com(
-    problem: ContactProblem, steps: list[Step], footholds: Float[np.ndarray, "n 3"]
-) -> tuple[Float[np.ndarray, "n 2 3"] | None, list[Step], int]:
+    problem: ContactProblem, constraints: list[StepConstraints], footholds: Float[np.ndarray, "n 3"]
+) -> tuple[Float[np.ndarray, "n 2 3"] | None, list[StepConstraints], int]:
     """Put the centre of mass over given footholds.
 
     Returns:
@@ -94,15 +94,23 @@ def put_com(
         steps there are.
     """
     if problem.model != "two_com":
-        return None, steps, 0
-    stood = np.array([standing_point(problem, step.link, footholds) for step in steps])
-    turns = np.array([[rotation(yaw) for yaw in yaws] for yaws in foot_yaws(problem, steps)])
-    places, cuts = place_coms(steps, footholds - stood, problem.foot_half_size, turns)
-    steps = list(steps)
+        return None, constraints, 0
+    stood = np.array(
+        [standing_point(problem, constraint.link, footholds) for constraint in constraints]
+    )
+    turns = np.array([[rotation(yaw) for yaw in yaws] for yaws in foot_yaws(problem, constraints)])
+    half_sizes = np.array(
+        [
+            [problem.half_sizes[name] for name in (constraint.link.effector, constraint.foot)]
+            for constraint in constraints
+        ]
+    )
+    places, cuts = place_coms(constraints, footholds - stood, half_sizes, turns)
+    constraints = list(constraints)
     for index, found in cuts.items():
         normals, bounds = zip(*found, strict=True)
-        steps[index] = steps[index].with_cuts(np.array(normals), np.array(bounds))
-    return stood[:, None] + places, steps, len(cuts)
+        constraints[index] = constraints[index].with_cuts(np.array(normals), np.array(bounds))
+    return stood[:, None] + places, constraints, len(cuts)
 
 
 def standing_point(
@@ -116,29 +124,29 @@ def standing_point(
 
 def _place_feet(
     problem: ContactProblem,
-    steps: list[Step],
+    constraints: list[StepConstraints],
     surfaces: tuple[str, ...],
     deadline: float,
     targets: Targets | None,
-) -> tuple[Outcome, Float[np.ndarray, "n 3"] | None, tuple[int, ...]]:
+) -> tuple[SolverStatus, Float[np.ndarray, "n 3"] | None, tuple[int, ...]]:
     """Solve for two coordinates in the plane of each surface, and the least slack.
 
     Returns:
-        The outcome, footholds where there are some, and the phases to blame where there are none.
+        The status, footholds where there are some, and the steps to blame where there are none.
     """
-    count = len(steps)
+    count = len(constraints)
     planes = [problem.surfaces[name] for name in surfaces]
     origin = np.array([plane.vertices.mean(axis=0) for plane in planes])
     columns = np.arange(2 * count).reshape(count, 2)
     slack = np.array([2 * count])
     rows = Rows(2 * count + 1)
-    owners = []  # the phases that a row concerns: where it lands, where another foot stands
-    for index, (plane, step) in enumerate(zip(planes, steps, strict=True)):
+    owners = []  # the steps that a row concerns: where it lands, where another foot stands
+    for index, (plane, constraint) in enumerate(zip(planes, constraints, strict=True)):
         inside = plane.edge_offsets - plane.edge_normals @ origin[index]
         ones = np.ones((len(inside), 1))
         rows.add([(columns[index], plane.edge_normals @ plane.basis.T), (slack, ones)], inside)
         owners += [(index, index)] * len(inside)
-        for link in step.links:
+        for link in constraint.links:
             ones = np.ones((len(link.b), 1))
             blocks = [(columns[index], link.A @ plane.basis.T), (slack, ones)]
             bound = link.b - link.A @ origin[index]
@@ -151,8 +159,8 @@ def _place_feet(
             owners += [(index, link.standing)] * len(link.b)
     program = _most_slack(rows, count)
     solution = solve(program, deadline - time.perf_counter())
-    if solution.outcome != "optimal":
-        return solution.outcome, None, ()
+    if solution.status != "optimal":
+        return solution.status, None, ()
     margin = float(solution.x[-1])
     if margin < LEAST_MARGIN:
         return "infeasible", None, _to_blame(solution.duals, owners)
@@ -165,18 +173,18 @@ def _place_feet(
             )
         else:
             solution = _nearest_quadratic(kept, origin, bases, targets)
-        if solution.outcome != "optimal":
-            return solution.outcome, None, ()
+        if solution.status != "optimal":
+            return solution.status, None, ()
     local = solution.x[: 2 * count].reshape(count, 1, 2)
     return "optimal", origin + (local @ bases)[:, 0, :], ()
 
 
 def _to_blame(duals: Float[np.ndarray, " r"], owners: list[tuple[int, int]]) -> tuple[int, ...]:
-    """Return the phases of the rows with a dual: these rows alone allow no more slack."""
+    """Return the steps of the rows with a dual: these rows alone allow no more slack."""
     size = np.abs(duals)
     rows = np.flatnonzero(size > 1e-9 * size.max(initial=0.0))
-    blamed = {phase for row in rows for phase in owners[row]} - {INITIAL}
-    return tuple(sorted(blamed or {phase for phase, _ in owners}))
+    blamed = {step for row in rows for step in owners[row]} - {INITIAL}
+    return tuple(sorted(blamed or {step for step, _ in owners}))
 
 
 def _most_slack(rows: Rows, count: int) -> Program:
@@ -197,7 +205,7 @@ def _nearest_quadratic(
     program: Program, origin: np.ndarray, bases: np.ndarray, targets: Targets
 ) -> Solution:
     """Minimise sum |u|^2, u = p_xy - target = origin_xy + B' w - target, over the same rows."""
-    flat = bases[:, :, :2].transpose(0, 2, 1)  # phase, world x y, coordinate in the plane
+    flat = bases[:, :, :2].transpose(0, 2, 1)  # step, world x y, coordinate in the plane
     if (np.abs(np.linalg.det(flat)) < 1e-3).any():
         raise InputError("a quadratic cost is horizontal: it needs surfaces that are no walls")
     back = sparse.block_diag(list(np.linalg.inv(flat)), format="csr")

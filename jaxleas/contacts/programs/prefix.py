@@ -3,32 +3,32 @@
 from collections.abc import Callable
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.linear_program import Outcome
+from jaxleas.contacts.programs.linear_program import SolverStatus
 
 
 def last_feasible_phase(
     problem: ContactProblem,
-    can_be_made: Callable[[ContactProblem], Outcome | str],
-    infeasible_phase: int | None = None,
+    can_be_made: Callable[[ContactProblem], SolverStatus | str],
+    infeasible_step: int | None = None,
 ) -> int | None:
-    """Return the last phase up to which a plan exists; -1 if not even the first can be made.
+    """Return the last step up to which a plan exists; -1 if not even the first can be made.
 
     Args:
         problem: problem that has no plan.
-        can_be_made: function that judges the problem of the first phases; "optimal" means yes. If
-            the first n phases have a plan, so have the first n - 1: n is found in log2 questions.
-        infeasible_phase: index of a phase known to be impossible; by default the last.
+        can_be_made: function that judges the problem of the first steps; "optimal" means yes. If
+            the first n steps have a plan, so have the first n - 1: n is found in log2 questions.
+        infeasible_step: index of a step known to be impossible; by default the last.
 
     Returns:
-        The phase's index, or None if a question was not answered in time.
+        The step's index, or None if a question was not answered in time.
     """
-    made, failed = -1, len(problem) - 1 if infeasible_phase is None else infeasible_phase
+    made, failed = -1, len(problem) - 1 if infeasible_step is None else infeasible_step
     while failed - made > 1:
         middle = (made + failed) // 2
-        outcome = can_be_made(problem.prefix(middle + 1))
-        if outcome in ("time_limit", "failed"):
+        status = can_be_made(problem.prefix(middle + 1))
+        if status in ("time_limit", "failed"):
             return None
-        if outcome == "optimal":
+        if status == "optimal":
             made = middle
         else:
             failed = middle

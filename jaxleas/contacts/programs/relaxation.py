@@ -7,11 +7,11 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.linear_program import Outcome, Program, Rows, solve
-from jaxleas.contacts.programs.mixed_integer import Candidates, add_step
+from jaxleas.contacts.programs.constraints import StepConstraints
+from jaxleas.contacts.programs.linear_program import Program, Rows, SolverStatus, solve
+from jaxleas.contacts.programs.mixed_integer import Candidates, add_constraint
 from jaxleas.contacts.programs.placement import put_com
 from jaxleas.contacts.programs.slack_weights import SlackWeights, slack_weights
-from jaxleas.contacts.programs.steps import Step
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,21 +19,21 @@ class Relaxed:
     """The answer of the relaxation.
 
     Attributes:
-        outcome: "infeasible" proves that there is no plan.
-        steps: steps as given, with the cuts that were found on the way.
-        footholds: foothold of each phase [m].
-        slack: alpha of each candidate of each phase [m]: its distance, and 0 on the surface.
+        status: "infeasible" proves that there is no plan.
+        constraints: constraints on the steps as given, with the cuts that were found on the way.
+        footholds: foothold of each step [m].
+        slack: alpha of each candidate of each step [m]: its distance, and 0 on the surface.
     """
 
-    outcome: Outcome
-    steps: list[Step]
+    status: SolverStatus
+    constraints: list[StepConstraints]
     footholds: Float[np.ndarray, "n 3"] | None = None
     slack: tuple[Float[np.ndarray, " c"], ...] = ()
 
 
 def relax(
     problem: ContactProblem,
-    steps: list[Step],
+    constraints: list[StepConstraints],
     candidates: Candidates,
     deadline: float = np.inf,
     weights: SlackWeights = "uniform",
@@ -47,29 +47,29 @@ def relax(
 
     Args:
         problem: the contact problem.
-        steps: steps of the problem's phases, with cuts.
-        candidates: candidates of each phase; a single one is a hard constraint.
+        constraints: constraints on the problem's steps, with cuts.
+        candidates: candidates of each step; a single one is a hard constraint.
         deadline: time by `time.perf_counter` after which to stop [s].
         weights: weights of the slacks, see `slack_weights`.
     """
     program, starts = _assemble(
-        problem, steps, candidates, slack_weights(problem, candidates, weights)
+        problem, constraints, candidates, slack_weights(problem, candidates, weights)
     )
     solution = solve(program, deadline - time.perf_counter())
-    if solution.outcome != "optimal":
-        return Relaxed(solution.outcome, steps)
+    if solution.status != "optimal":
+        return Relaxed(solution.status, constraints)
     footholds = solution.x[starts[:-1, None] + np.arange(3)]
-    _, steps, _ = put_com(problem, steps, footholds)
+    _, constraints, _ = put_com(problem, constraints, footholds)
     slack = tuple(
         np.array([problem.surfaces[name].distance(point) for name in names])
         for names, point in zip(candidates, footholds, strict=True)
     )
-    return Relaxed("optimal", steps, footholds, slack)
+    return Relaxed("optimal", constraints, footholds, slack)
 
 
 def _assemble(
     problem: ContactProblem,
-    steps: list[Step],
+    constraints: list[StepConstraints],
     candidates: Candidates,
     weights: list[Float[np.ndarray, " c"]],
 ) -> tuple[Program, np.ndarray]:
@@ -78,7 +78,7 @@ def _assemble(
     total = int(starts[-1])
     rows, cost = Rows(total), np.zeros(total)
     low = np.full(total, -np.inf)
-    for index, (step, names) in enumerate(zip(steps, candidates, strict=True)):
+    for index, (constraint, names) in enumerate(zip(constraints, candidates, strict=True)):
         begin = int(starts[index])
         alpha = begin + 3 + np.arange(slacks[index])
         cost[alpha], low[alpha] = weights[index][: len(alpha)], 0.0
@@ -90,7 +90,7 @@ def _assemble(
             if len(alpha):
                 blocks.append((alpha[number : number + 1], -np.ones((len(b), 1))))
             rows.add(blocks, b)
-        add_step(problem, step, rows, begin, starts)
+        add_constraint(problem, constraint, rows, begin, starts)
     row_low, row_high = rows.bounds()
     high = np.full(total, np.inf)
     return Program(cost, low, high, rows.matrix(), row_low, row_high), starts

@@ -11,8 +11,7 @@ from jaxleas.contacts.programs.attempt import MAX_COMBINATIONS, Attempt, attempt
 from jaxleas.contacts.programs.judging import judge_by_program
 from jaxleas.contacts.programs.settings import Sl1mPlanSettings, Sl1mSettings
 from jaxleas.contacts.programs.slack_weights import SlackWeights
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 
 class Sl1m(Planner):
@@ -64,11 +63,11 @@ def plan_sl1m(
 
     Args:
         problem: the contact problem.
-        max_combinations: number of combinations of surfaces to try in the undecided phases; 0: none
-            (the thesis's SL1M without heuristics), which plans where every phase is decided.
+        max_combinations: number of combinations of surfaces to try in the undecided steps; 0: none
+            (the thesis's SL1M without heuristics), which plans where every step is decided.
         weights: weights of the slacks: "uniform", as published, or "guide": the guide path chooses.
         time_limit: time limit [s]; when it is over, the plan's status says "time_limit".
-        diagnose: when there is no plan, find the last phase for which SL1M has one.
+        diagnose: when there is no plan, find the last step for which SL1M has one.
         pruning: whether candidates that no step can reach are dropped first.
 
     Raises:
@@ -86,29 +85,29 @@ def plan_sl1m(
     if found.placement is not None:
         plan = certified("sl1m", problem, found.surfaces, found.placement, seconds)
         return plan.but(**counts)
-    if found.outcome == "time_limit":
+    if found.status == "time_limit":
         return late("sl1m", seconds, time_limit).but(**counts)
-    if found.outcome == "failed":
+    if found.status == "failed":
         raise PlannerError("the linear-program solver gave no answer")
-    status = "infeasible" if found.outcome == "infeasible" else "not_found"
+    status = "infeasible" if found.status == "infeasible" else "not_found"
     plan = ContactPlan("sl1m", False, status, _sl1m_reason(found), seconds=seconds).but(**counts)
     if not diagnose:
         return plan
 
     def judge(prefix: ContactProblem) -> str:
-        return attempt(prefix, deadline, max_combinations, pruning, weights).outcome
+        return attempt(prefix, deadline, max_combinations, pruning, weights).status
 
     plan = diagnosed(plan, problem, judge, None, deadline, exact=status == "infeasible")
     return plan.but(seconds=time.perf_counter() - begin)
 
 
 def _sl1m_reason(found: Attempt) -> str:
-    if found.outcome == "infeasible":
+    if found.status == "infeasible":
         return "not even the relaxation has a solution"
     failed = f"the first {found.combinations} combinations of surfaces failed"
     if found.exhausted:
         failed = f"every combination of surfaces fails ({found.combinations} were tried)"
     return (
-        f"the relaxation left {found.undecided} phases undecided, and {failed}; this proves"
+        f"the relaxation left {found.undecided} steps undecided, and {failed}; this proves"
         " nothing: ask the mip planner"
     )

@@ -1,14 +1,15 @@
 """Samples of the data base that come close to a surface from a root pose (T 4.1.2)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.contacts.sampling.case import PlanningCase
+from jaxleas.contacts.sampling.database import LegDatabase
 from jaxleas.contacts.sampling.heuristics import HEURISTICS, Wish
-from jaxleas.contacts.sampling.limbs import SIDES, Roots, to_left_root
-from jaxleas.contacts.sampling.world import World
+from jaxleas.contacts.sampling.roots import Roots, to_model
 
 
 @dataclass(frozen=True)
@@ -17,9 +18,9 @@ class Aim:
 
     Attributes:
         roots: root poses of the robots.
-        limb: index of the limb that moves: 0 left, 1 right.
-        target: reference foot under the root some time ahead, mirrored to the left leg, in the
-            root frame [m].
+        limb: index of the leg that moves.
+        target: reference foot under the root some time ahead, in the root frame, mirrored where
+            the leg mirrors its model [m].
         direction: direction of the root's motion, mirrored likewise; a unit vector or zero.
     """
 
@@ -44,7 +45,7 @@ class Candidates:
     Attributes:
         row: row of the aim.
         rank: rank of the candidate; 0 is the best of its row.
-        sample: index in the data base.
+        sample: number of the sample in the data bases.
         surface: index of the ground's polygon.
     """
 
@@ -64,7 +65,7 @@ class Candidates:
         return len(self.row)
 
 
-def near_candidates(world: World, aim: Aim) -> Candidates:
+def near_candidates(case: PlanningCase, aim: Aim) -> Candidates:
     """Return the samples near a surface, each row's best scores first.
 
     The samples lie in order of height: a surface's interval of heights below the root picks a
@@ -72,30 +73,49 @@ def near_candidates(world: World, aim: Aim) -> Candidates:
     ever tried.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         aim: aim of the moving legs, one row per robot.
     """
-    row, sample, surface = _near_pairs(world, aim)
-    wish = Wish(sample, aim.target[row], aim.direction[row], world.ground.normals[surface])
-    score = HEURISTICS[world.settings.heuristic](world.database, wish)
+    every = np.arange(len(aim))
+    parts = []
+    for number, rows in case.legs.by_model(aim.limb):
+        found = _of_model(case, aim[rows], number)
+        parts.append(replace(found, row=every[rows][found.row]))
+    if len(parts) == 1:
+        return parts[0]
+    together = Candidates(*(
+        np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(Candidates)
+    ))  # fmt: skip
+    return together[np.argsort(together.row, kind="stable")]
+
+
+def _of_model(case: PlanningCase, aim: Aim, number: int) -> Candidates:
+    """Return the candidates of legs that have one model."""
+    database = case.databases.each[number]
+    row, sample, surface = _near_pairs(case, aim, database)
+    wish = Wish(sample, aim.target[row], aim.direction[row], case.ground.normals[surface])
+    score = HEURISTICS[case.settings.heuristic](database, wish)
     bounds = np.searchsorted(row, np.arange(len(aim) + 1))
     orders, ranks = [], []
     for first, last in pairwise(bounds):
-        order = np.argsort(-score[first:last], kind="stable")[: sum(world.settings.stages)]
+        order = np.argsort(-score[first:last], kind="stable")[: sum(case.settings.stages)]
         orders.append(order + first)
         ranks.append(np.arange(len(order)))
     order = np.concatenate(orders)
-    return Candidates(row[order], np.concatenate(ranks), sample[order], surface[order])
+    counted = sample[order] + case.databases.first[number]
+    return Candidates(row[order], np.concatenate(ranks), counted, surface[order])
 
 
-def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _near_pairs(
+    case: PlanningCase, aim: Aim, database: LegDatabase
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (row, sample, surface) of all samples within reach of a surface, row after row.
 
     A slice of samples times a few half-spaces, one surface at a time: gathering the samples of all
     surfaces into one array costs more than this loop.
     """
-    ground, database = world.ground, world.database
-    count, gap = ground.walkable, world.settings.contact_distance
+    ground = case.ground
+    count, gap = ground.walkable, case.settings.contact_distance
     position = aim.roots.position
     reach = database.reach + gap
     x, y = position[:, 0, None], position[:, 1, None]
@@ -109,7 +129,7 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
     last = np.searchsorted(
         database.heights, ground.high[surface, 2] - position[row, 2] + gap
     ).tolist()
-    halfspaces = _halfspaces(world, aim, row, surface)
+    halfspaces = _halfspaces(case, aim, row, surface)
     found = [
         first[pair]
         + np.flatnonzero(
@@ -125,14 +145,14 @@ def _near_pairs(world: World, aim: Aim) -> tuple[np.ndarray, np.ndarray, np.ndar
 
 
 def _halfspaces(
-    world: World, aim: Aim, row: np.ndarray, surface: np.ndarray
+    case: PlanningCase, aim: Aim, row: np.ndarray, surface: np.ndarray
 ) -> Float[np.ndarray, "pairs H 4"]:
-    """Return, for left-leg soles in the root frame, rows (a, c): near where a . x + c >= 0.
+    """Return rows (a, c) for soles x as the legs' model has them: near where a . x + c >= 0.
 
     Two sides of the plane at the contact distance, then the edges.
     """
-    ground, gap = world.ground, world.settings.contact_distance
-    roots, side = aim.roots[row], SIDES[aim.limb[row]]
+    ground, gap = case.ground, case.settings.contact_distance
+    roots, side = aim.roots[row], case.legs.side[aim.limb[row]]
     normals = np.concatenate(
         [ground.normals[surface, None], -ground.normals[surface, None], ground.inward[surface]],
         axis=1,
@@ -141,7 +161,5 @@ def _halfspaces(
     least = np.concatenate([offsets - gap, -offsets - gap, ground.inward_offsets[surface]], axis=1)
     constant = (normals @ roots.position[:, :, None])[:, :, 0] - least
     faces = normals.shape[1]
-    turned = to_left_root(
-        normals.reshape(-1, 3), np.repeat(roots.yaw, faces), np.repeat(side, faces)
-    )
+    turned = to_model(normals.reshape(-1, 3), np.repeat(roots.yaw, faces), np.repeat(side, faces))
     return np.concatenate([turned.reshape(normals.shape), constant[:, :, None]], axis=2)

@@ -1,29 +1,46 @@
-"""Make one contact with one foot while the other stands: candidates, projection, tests."""
+"""Make one contact with one foot while all others stand: candidates, projection, tests."""
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.candidates import Aim, Candidates, near_candidates
-from jaxleas.contacts.sampling.database import align
-from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
-from jaxleas.contacts.sampling.limbs import (
-    SIDES,
+from jaxleas.contacts.sampling.case import PlanningCase
+from jaxleas.contacts.sampling.leg_clearance import LegCapsules, leg_capsules, legs_touch
+from jaxleas.contacts.sampling.placed_legs import (
     PlacedLegs,
     body_moments,
     legs_collide,
-    other_leg,
+    mass_moments,
     place_legs,
-    rotations_to_world,
-    to_world,
 )
+from jaxleas.contacts.sampling.projection import project
+from jaxleas.contacts.sampling.requirement import Requirement, Tally, count_left
 from jaxleas.contacts.sampling.stance import Stances, support_corners
-from jaxleas.contacts.sampling.two_point import com_exists
-from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.legs import mass_moment
+from jaxleas.contacts.sampling.two_point import ComRegion, Soles, com_exists, com_region
 
 _ROBUSTNESS_AT_FIRST = 3  # candidates tested first, of those that pass all other tests
+
+
+@dataclass(frozen=True)
+class Move:
+    """A move of one foot of each robot, one row per robot.
+
+    Attributes:
+        aim: moving legs, and the poses of the roots when their feet land.
+        stances: stances before the move; the contacts of the other feet are kept.
+        order: value for `since` of the new contacts.
+        least: distance by which the contact must move [m].
+        lifted: whether the foot leaves a contact; a foot that is put down at the start does not.
+    """
+
+    aim: Aim
+    stances: Stances
+    order: Int[np.ndarray, " N"]
+    least: float = 0.0
+    lifted: bool = True
 
 
 @dataclass(frozen=True)
@@ -42,6 +59,23 @@ class Created:
 
 
 @dataclass(frozen=True)
+class _Standing:
+    """The feet of each robot that stand while one moves.
+
+    Attributes:
+        capsules: capsules of their legs, for each in turn.
+        clear: whether these legs touch none of each other.
+        moment: mass times position of all but the moving leg, in the world [kg m].
+        region: where the centre of mass can be.
+    """
+
+    capsules: tuple[LegCapsules, ...]
+    clear: Bool[np.ndarray, " N"]
+    moment: Float[np.ndarray, "N 3"]
+    region: ComRegion
+
+
+@dataclass(frozen=True)
 class _Tried:
     """Candidates that passed all tests but robustness, best first within a row."""
 
@@ -49,7 +83,7 @@ class _Tried:
     sole: Float[np.ndarray, "M 3"]
     rotation: Float[np.ndarray, "M 3 3"]
     surface: Int[np.ndarray, " M"]
-    corners: Float[np.ndarray, "M 4 3"]
+    corners: Float[np.ndarray, "M C 3"]
     moment: Float[np.ndarray, "M 3"]
 
     def __getitem__(self, which) -> "_Tried":
@@ -63,126 +97,112 @@ class _Tried:
         )
 
 
-def create_contacts(
-    world: World,
-    aim: Aim,
-    stances: Stances,
-    order: Int[np.ndarray, " N"],
-    *,
-    least_move: float = 0.0,
-    tally: dict[str, int] | None = None,
-) -> Created:
+def create_contacts(case: PlanningCase, move: Move, tally: Tally | None = None) -> Created:
     """Give the moving foot of each robot the best new contact that passes every test.
 
     In order of cost: it projects onto the surface within the joint limits, the leg touches neither
-    scene nor other leg, the two-point condition holds, and the posture's robustness is enough.
+    scene nor other legs, the two-point condition holds, and the posture's robustness is enough.
 
     Args:
-        world: robot, scene, settings.
-        aim: the moving limbs, and the poses of the roots when they land.
-        stances: stances before the move; the other foot's contact is kept.
-        order: value for `since` of the new contacts.
-        least_move: distance by which the contact must move [m].
-        tally: receives the number of places that each test leaves, in the order of the tests.
+        case: robot, scene, settings.
+        move: move of one foot of each robot.
+        tally: receives the number of places that each test leaves.
     """
-    count = len(aim)
+    aim, stances, count = move.aim, move.stances, len(move.aim)
     each = np.arange(count)
-    standing = other_leg(aim.limb)
-    kept = place_legs(
-        world.legs,
-        aim.roots,
-        standing,
-        stances.sole[each, standing],
-        stances.rotation[each, standing],
-    )
+    standing = _standing(case, aim, stances)
     result = Created(np.zeros(count, dtype=bool), stances[each], np.zeros((count, 3)))
-    can_leave = _two_points(world, aim, stances, each, stances.sole[each, aim.limb],
-                            stances.rotation[each, aim.limb])  # fmt: skip
-    candidates = near_candidates(world, aim)
-    count_left(tally, "leave", int(can_leave.sum()))
-    count_left(tally, "near", len(candidates.row))
-    candidates = candidates[can_leave[candidates.row]]
+    candidates = near_candidates(case, aim)
+    candidates = candidates[standing.clear[candidates.row]]
+    count_left(tally, Requirement.OTHERS_CLEAR, int(standing.clear.sum()))
+    if move.lifted:
+        before, turned = stances.sole[each, aim.limb], stances.rotation[each, aim.limb]
+        can_leave = com_exists(case.legs, standing.region, aim.limb, before, turned)
+        count_left(tally, Requirement.LIFTED, int(can_leave.sum()))
+        count_left(tally, Requirement.NEAR, len(candidates.row))
+        candidates = candidates[can_leave[candidates.row]]
     start = 0
-    for stage in world.settings.stages:
+    for stage in case.settings.stages:
         chosen = (candidates.rank >= start) & (candidates.rank < start + stage)
         chosen &= ~result.found[candidates.row]
         start += stage
         if chosen.any():
-            tried = _try(world, aim, stances, kept, candidates[chosen], least_move, tally)
-            _take_first_robust(world, aim, kept, tried, order, result)
-            count_left(tally, "robust enough", int(result.found.sum()))
+            tried = _try(case, move, standing, candidates[chosen], tally)
+            _take_first_robust(case, move, standing, tried, result)
+            count_left(tally, Requirement.ROBUST, int(result.found.sum()))
         if result.found.all():
             break
     return result
 
 
-def count_left(tally: dict[str, int] | None, test: str, left: int) -> None:
-    """Add to the number of places that a test left."""
-    if tally is not None:
-        tally[test] = tally.get(test, 0) + left
+def _standing(case: PlanningCase, aim: Aim, stances: Stances) -> _Standing:
+    """Place the legs that stand."""
+    others = case.legs.others[aim.limb]
+    count, feet = others.shape
+    row = np.arange(count)[:, None]
+    sole, rotation = stances.sole[row, others], stances.rotation[row, others]
+    roots = aim.roots[np.repeat(np.arange(count), feet)]
+    placed = place_legs(
+        case.legs, roots, others.reshape(-1), sole.reshape(-1, 3), rotation.reshape(-1, 3, 3)
+    )
+    moments = mass_moments(case.legs, placed).reshape(count, feet, 3).sum(axis=1)
+    together = leg_capsules(case.legs, placed)
+    capsules = tuple(together[foot::feet] for foot in range(feet))
+    clear = np.ones(count, dtype=bool)
+    for one, other in combinations(capsules, 2):
+        clear &= ~legs_touch(one, other)
+    soles = Soles(others, sole, rotation, stances.corners[row, others])
+    return _Standing(
+        capsules=capsules,
+        clear=clear,
+        moment=body_moments(case.legs, aim.roots) + moments,
+        region=com_region(case.legs, soles),
+    )
 
 
 def _try(
-    world: World,
-    aim: Aim,
-    stances: Stances,
-    kept: PlacedLegs,
-    some: Candidates,
-    least_move: float,
-    tally: dict[str, int] | None,
+    case: PlanningCase, move: Move, standing: _Standing, some: Candidates, tally: Tally | None
 ) -> _Tried:
     """Return the candidates that pass all tests but robustness."""
-    database, ground = world.database, world.ground
-    roots, limb = aim.roots[some.row], aim.limb[some.row]
-    side, normal = SIDES[limb], ground.normals[some.surface]
-    sole = to_world(database.soles[some.sample], roots.yaw, side) + roots.position
-    above = (normal * sole).sum(axis=1) - ground.offsets[some.surface]
-    sole = sole + (world.settings.contact_lift - above)[:, None] * normal
-    rotation = align(rotations_to_world(database.rotations[some.sample], roots.yaw, side), normal)
-    placed = place_legs(world.legs, roots, limb, sole, rotation)
-    before = stances.sole[some.row, limb]
-    good = placed.reachable & (np.linalg.norm(sole - before, axis=1) >= least_move)
-    rows = np.flatnonzero(good)
-    count_left(tally, "within the joint limits", len(rows))
-    rows = rows[~legs_collide(world.legs, placed, rows, ground, feet=True)]
-    count_left(tally, "clear of the scene", len(rows))
-    rows = _clear_of_other_leg(world, placed, kept, some.row, rows)
-    count_left(tally, "clear of the other leg", len(rows))
-    rows = rows[_two_points(world, aim, stances, some.row[rows], sole[rows], rotation[rows])]
-    count_left(tally, "within reach of the centre of mass over the other foot", len(rows))
-    passed = placed[rows]
+    legs, limb = case.legs, move.aim.limb[some.row]
+    projected = project(case, move.aim, some)
+    sole, rotation, placed = projected.sole, projected.rotation, projected.placed
+    moved = np.linalg.norm(sole - move.stances.sole[some.row, limb], axis=1)
+    rows = np.flatnonzero(placed.reachable & (moved >= move.least))
+    count_left(tally, Requirement.WITHIN_LIMITS, len(rows))
+    rows = rows[~legs_collide(legs, placed, rows, case.ground, feet=True)]
+    count_left(tally, Requirement.CLEAR_OF_SCENE, len(rows))
+    rows = clear_of(case, placed, standing.capsules, some.row, rows)
+    count_left(tally, Requirement.CLEAR_OF_LEGS, len(rows))
+    region = standing.region[some.row[rows]]
+    rows = rows[com_exists(legs, region, limb[rows], sole[rows], rotation[rows])]
+    count_left(tally, Requirement.LOADED, len(rows))
+    surface = some.surface[rows]
     return _Tried(
         row=some.row[rows],
         sole=sole[rows],
         rotation=rotation[rows],
-        surface=some.surface[rows],
+        surface=surface,
         corners=support_corners(
-            ground, sole[rows], rotation[rows], some.surface[rows], world.sole_half_size
+            case.ground, sole[rows], rotation[rows], surface, legs.corners[limb[rows]]
         ),
-        moment=mass_moment(world.legs, passed.frames, passed.origins),
+        moment=mass_moments(legs, placed[rows]),
     )
 
 
 def _take_first_robust(
-    world: World,
-    aim: Aim,
-    kept: PlacedLegs,
-    tried: _Tried,
-    order: np.ndarray,
-    result: Created,
+    case: PlanningCase, move: Move, standing: _Standing, tried: _Tried, result: Created
 ) -> None:
     """Write the first robust candidate of each row into the result."""
-    resting = body_moments(world.legs, aim.roots)
-    resting = resting + mass_moment(world.legs, kept.frames, kept.origins)
     rank = np.arange(len(tried.row)) - np.searchsorted(tried.row, tried.row)
     for chosen in (rank < _ROBUSTNESS_AT_FIRST, rank >= _ROBUSTNESS_AT_FIRST):
         some = tried[chosen & ~result.found[tried.row]]
         if not len(some.row):
             continue
-        limb = aim.limb[some.row]
-        stances = with_contact(result.stances[some.row], limb, some, order[some.row])
-        com = (resting[some.row] + some.moment) / world.legs.mass
-        good = np.flatnonzero(world.is_robust(stances, com))
+        limb = move.aim.limb[some.row]
+        stances = _with_contact(result.stances[some.row], limb, some, move.order[some.row])
+        com = (standing.moment[some.row] + some.moment) / case.legs.mass
+        good = np.flatnonzero(case.is_robust(stances, com))
         row, first = np.unique(some.row[good], return_index=True)
         first = good[first]
         result.found[row] = True
@@ -190,7 +210,7 @@ def _take_first_robust(
         put(result.stances, row, stances[first])
 
 
-def with_contact(
+def _with_contact(
     stances: Stances, limb: Int[np.ndarray, " N"], new: _Tried, order: Int[np.ndarray, " N"]
 ) -> Stances:
     """Return stances with one contact replaced in each row.
@@ -212,30 +232,24 @@ def put(stances: Stances, rows: Int[np.ndarray, " M"], new: Stances) -> None:
     stances.since[rows] = new.since
 
 
-def _two_points(
-    world: World,
-    aim: Aim,
-    stances: Stances,
-    row: np.ndarray,
-    sole: np.ndarray,
-    rotation: np.ndarray,
-) -> Bool[np.ndarray, " M"]:
-    """Return whether the centre of mass can be over the standing foot, with the other at `sole`."""
-    standing = other_leg(aim.limb[row])
-    return com_exists(
-        world.legs.com_in_foot,
-        stances.sole[row, standing],
-        stances.rotation[row, standing],
-        stances.corners[row, standing],
-        sole,
-        rotation,
-        SIDES[standing],
-    )
+def clear_of(
+    case: PlanningCase,
+    placed: PlacedLegs,
+    others: tuple[LegCapsules, ...],
+    row: Int[np.ndarray, " M"],
+    chosen: Int[np.ndarray, " K"],
+) -> Int[np.ndarray, " L"]:
+    """Return those of some moving legs that touch no other leg of their robot.
 
-
-def _clear_of_other_leg(
-    world: World, placed: PlacedLegs, kept: PlacedLegs, row: np.ndarray, chosen: np.ndarray
-) -> np.ndarray:
-    moving = leg_segments(world.legs, placed[chosen])
-    standing = leg_segments(world.legs, kept)[row[chosen]]
-    return chosen[~legs_touch(world.legs, moving, standing)]
+    Args:
+        case: robot, scene, settings.
+        placed: moving legs.
+        others: capsules of other legs, one row per robot, for each of them in turn.
+        row: robot of each moving leg.
+        chosen: indices of the moving legs to judge.
+    """
+    moving = leg_capsules(case.legs, placed[chosen])
+    touch = np.zeros(len(chosen), dtype=bool)
+    for capsules in others:
+        touch |= legs_touch(moving, capsules[row[chosen]])
+    return chosen[~touch]

@@ -1,25 +1,23 @@
-"""25,000 leg configurations, drawn once and searched at every step (T 4.1.2)."""
+"""25,000 configurations of each kind of leg, drawn once and searched at every step (T 4.1.2)."""
 
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
-from jaxleas.dynamics.vectors import cross
-from jaxleas.robots import Robot
-from jaxleas.robots.chain import chain_jacobian
-from jaxleas.robots.legs import LegModel, leg_angles, leg_posture, legs_of
+from jaxleas.dynamics import cross
+from jaxleas.robots import LimbModel, Robot, chain_jacobian, legs_of
 
 _TILTS = np.deg2rad([[0.0, 0.0], [12.0, 0.0], [-12.0, 0.0], [0.0, 12.0], [0.0, -12.0]])
 
 
 @dataclass(frozen=True, eq=False)
 class LegDatabase:
-    """Configurations of the left leg whose foot can be laid on walkable ground, by height.
+    """Configurations of a leg whose foot can be laid on walkable ground, by height.
 
     Attributes:
-        legs: model of the legs that have these configurations.
+        model: model of the leg that has these configurations.
         drawn: number of configurations drawn, including those of no use on walkable ground.
         angles: joint angles [rad].
         soles: positions of the soles in the root frame, in order of z [m].
@@ -31,7 +29,7 @@ class LegDatabase:
         homogeneous: the soles as columns (x, y, z, 1).
     """
 
-    legs: LegModel
+    model: LimbModel
     drawn: int
     angles: Float[np.ndarray, "N J"]
     soles: Float[np.ndarray, "N 3"]
@@ -47,46 +45,73 @@ class LegDatabase:
         return len(self.angles)
 
 
+@dataclass(frozen=True, eq=False)
+class LegDatabases:
+    """The configurations of all kinds of legs of a robot.
+
+    Samples are counted through all of them: those of the second data base follow the first one's.
+
+    Attributes:
+        each: data base of each model; legs that are mirror images share theirs.
+        first: number of the first sample of each.
+        soles: positions of all samples' soles, in the root frame [m].
+        rotations: rotations of all samples' feet, in the root frame.
+    """
+
+    each: tuple[LegDatabase, ...]
+    first: Int[np.ndarray, " M"]
+    soles: Float[np.ndarray, "N 3"]
+    rotations: Float[np.ndarray, "N 3 3"]
+
+
 @lru_cache(maxsize=4)
-def leg_database(robot: Robot, samples: int, seed: int) -> LegDatabase:
-    """Return the data base of a robot's legs, made once for each process.
+def leg_databases(robot: Robot, samples: int, seed: int) -> LegDatabases:
+    """Return the data bases of a robot's legs, made once for each process.
 
     Args:
         robot: robot whose file describes its legs.
-        samples: number of configurations to draw.
+        samples: number of configurations to draw for each kind of leg.
         seed: seed of the draw.
     """
-    return make_database(legs_of(robot), samples, seed)
+    each = tuple(make_database(model, samples, seed) for model in legs_of(robot).models)
+    length = np.array([len(database) for database in each])
+    return LegDatabases(
+        each=each,
+        first=np.cumsum(length) - length,
+        soles=np.concatenate([database.soles for database in each]),
+        rotations=np.concatenate([database.rotations for database in each]),
+    )
 
 
-def make_database(legs: LegModel, samples: int, seed: int) -> LegDatabase:
+def make_database(model: LimbModel, samples: int, seed: int) -> LegDatabase:
     """Draw configurations uniformly within the joint limits; the first is the reference.
 
     Those are kept whose foot, in its place, can be laid on ground within 12 degrees of level by the
     smallest rotation without leaving the joint limits: no others pass the projection later.
 
     Args:
-        legs: model of the legs.
+        model: model of the leg.
         samples: number of configurations to draw.
         seed: seed of the draw.
     """
-    angles = np.random.default_rng(seed).uniform(legs.lower, legs.upper, (samples, legs.joints))
-    angles[0] = legs.reference
-    posture = leg_posture(legs, angles)
+    chain = model.chain
+    angles = np.random.default_rng(seed).uniform(chain.lower, chain.upper, (samples, len(chain)))
+    angles[0] = model.reference
+    posture = model.posture(angles)
     usable = np.zeros(samples, dtype=bool)
     for x, y in _TILTS:
         normal = np.array([np.sin(x), np.sin(y), 0.0])
         normal[2] = np.sqrt(1.0 - normal @ normal)
         aligned = align(posture.tip_rotation, np.broadcast_to(normal, (samples, 3)))
-        usable |= leg_angles(legs, posture.tip, aligned, angles)[1]
+        usable |= model.inverse(posture.tip, aligned, angles)[1]
     kept = np.flatnonzero(usable)
     kept = kept[np.argsort(posture.tip[kept, 2], kind="stable")]
-    jacobian = chain_jacobian(legs.left.chain, leg_posture(legs, angles[kept]))
+    jacobian = chain_jacobian(chain, model.posture(angles[kept]))
     manipulability = _manipulability(jacobian)
     linear = jacobian[:, :3]
     soles = posture.tip[kept]
     return LegDatabase(
-        legs=legs,
+        model=model,
         drawn=samples,
         angles=angles[kept],
         soles=soles,

@@ -6,10 +6,10 @@ from time import perf_counter
 
 import numpy as np
 
+from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.guides import KeptGuides
 from jaxleas.contacts.sampling.plan import Ending, How, SamplingPlan
 from jaxleas.contacts.sampling.stance import Stances, no_stances
-from jaxleas.contacts.sampling.world import World
 
 _HOWS: tuple[How, ...] = ("start", "kept", "stepped", "repositioned")
 
@@ -37,19 +37,23 @@ class Diary:
             self._entries.append((guide, at.copy(), kind, moved, stances[every], com))
 
     def plans(
-        self, world: World, guides: KeptGuides, ends: Sequence[tuple[Ending, str]], begun: float
+        self,
+        case: PlanningCase,
+        guides: KeptGuides,
+        ends: Sequence[tuple[Ending, str]],
+        begun: float,
     ) -> list[SamplingPlan]:
         """Return the record of each guide path, with the robustness of every posture.
 
         Args:
-            world: robot, scene, settings.
+            case: robot, scene, settings.
             guides: guide paths that were followed.
             ends: ending of each path, and the sentence that says what stopped it.
             begun: time of the start, by `perf_counter` [s].
         """
-        names = world.ground.names
-        guide, at, kind, moved, com, stances = self._columns()
-        robustness = world.robustness(stances, com) if len(guide) else np.zeros(0)
+        names = case.ground.names
+        guide, at, kind, moved, com, stances = self._columns(case)
+        robustness = case.robustness(stances, com) if len(guide) else np.zeros(0)
         order = np.argsort(guide, kind="stable")
         bounds = np.searchsorted(guide[order], np.arange(len(ends) + 1))
         seconds = (perf_counter() - begun) / len(ends)
@@ -81,11 +85,11 @@ class Diary:
         return plans
 
     def _columns(
-        self,
+        self, case: PlanningCase
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Stances]:
         if not self._entries:
             nothing = np.zeros(0, dtype=np.int64)
-            return nothing, nothing, nothing, nothing, np.zeros((0, 3)), no_stances(0)
+            return nothing, nothing, nothing, nothing, np.zeros((0, 3)), no_stances(case.legs, 0)
         guide, at, kind, moved, stances, com = zip(*self._entries, strict=True)
         together = Stances(
             *(

@@ -8,9 +8,9 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
-from jaxleas.contacts.sampling.limbs import SIDES, Roots, rotations_to_world, to_left_root, to_world
-from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.legs import leg_posture
+from jaxleas.contacts.sampling.case import PlanningCase
+from jaxleas.contacts.sampling.roots import Roots, rotations_to_world, to_model, to_world
+from jaxleas.robots import Legs
 from jaxleas.types import GuidePath, InputError
 
 MOST_COORDINATE = 1e4  # a guide path further out is given in other units [m]
@@ -27,7 +27,9 @@ class KeptGuides:
         ahead: root poses some time later, in the same rows.
         direction: unit vector of the motion in the world, zero at standstill, in the same rows.
         trunk_free: whether the trunk touches nothing.
-        reference_sole: reference position of the left foot, in the root frame [m].
+        reference_sole: reference position of each foot, in the root frame, mirrored where its leg
+            mirrors its model [m].
+        side: side of each leg: -1 for the mirror image of its model, else +1.
     """
 
     index: Int[np.ndarray, "B T"]
@@ -36,7 +38,8 @@ class KeptGuides:
     ahead: Roots
     direction: Float[np.ndarray, "rows 3"]
     trunk_free: Bool[np.ndarray, "B T"]
-    reference_sole: Float[np.ndarray, " 3"]
+    reference_sole: Float[np.ndarray, "F 3"]
+    side: Float[np.ndarray, " F"]
 
     def flat(self, guide: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Return the rows of configurations `at` of guide paths `guide`."""
@@ -45,28 +48,27 @@ class KeptGuides:
     def aim(self, guide: np.ndarray, at: np.ndarray, limb: np.ndarray) -> Aim:
         """Return the aim of a moving foot at a configuration."""
         rows = self.flat(guide, at)
-        roots, ahead, side = self.roots[rows], self.ahead[rows], SIDES[limb]
-        reference = np.broadcast_to(self.reference_sole, (len(rows), 3))
-        target = to_world(reference, ahead.yaw, side) + ahead.position
+        roots, ahead, side = self.roots[rows], self.ahead[rows], self.side[limb]
+        target = to_world(self.reference_sole[limb], ahead.yaw, side) + ahead.position
         return Aim(
             roots,
             limb,
-            to_left_root(target - roots.position, roots.yaw, side),
-            to_left_root(self.direction[rows], roots.yaw, side),
+            to_model(target - roots.position, roots.yaw, side),
+            to_model(self.direction[rows], roots.yaw, side),
         )
 
 
 def keep_configurations(
-    world: World, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
+    case: PlanningCase, guide_paths: Sequence[GuidePath], scene_index: Sequence[int]
 ) -> KeptGuides:
     """Keep every N-th configuration and the last, and judge the trunk at each.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         guide_paths: guide paths to keep, at least one, each of them usable.
         scene_index: index of the ground's scene that each path is in.
     """
-    settings = world.settings
+    settings = case.settings
     kept = []
     for path in guide_paths:
         index = np.arange(0, len(path), settings.keep_every)
@@ -95,28 +97,35 @@ def keep_configurations(
         roots=roots,
         ahead=Roots(np.concatenate(later), np.concatenate(later_yaw), scene),
         direction=np.concatenate(direction),
-        trunk_free=trunk_is_free(world, roots).reshape(index.shape),
-        reference_sole=leg_posture(world.legs, world.legs.reference).tip,
+        trunk_free=trunk_is_free(case, roots).reshape(index.shape),
+        reference_sole=_reference_soles(case.legs),
+        side=case.legs.side,
     )
 
 
-def trunk_is_free(world: World, roots: Roots) -> Bool[np.ndarray, " N"]:
+def _reference_soles(legs: Legs) -> Float[np.ndarray, "F 3"]:
+    """Return the reference position of each foot as its leg's model has it [m]."""
+    soles = [model.posture(model.reference).tip for model in legs.models]
+    return np.array([soles[number] for number in legs.model_of])
+
+
+def trunk_is_free(case: PlanningCase, roots: Roots) -> Bool[np.ndarray, " N"]:
     """Return at which root poses no box of the trunk touches the scene."""
     free = np.ones(len(roots), dtype=bool)
     ones = np.ones(len(roots))
     turn = rotations_to_world(np.broadcast_to(np.eye(3), (len(roots), 3, 3)), roots.yaw, ones)
     places = Places.of(roots.position, roots.scene, 1)
-    for box in world.robot.trunk:
+    for box in case.robot.trunk:
         low, high = np.asarray(box.low), np.asarray(box.high)
         middle = np.broadcast_to(0.5 * (low + high), (len(roots), 3))
         centre = to_world(middle, roots.yaw, ones) + roots.position
         half = np.broadcast_to(0.5 * (high - low), (len(roots), 3))
-        free &= ~boxes_meet_ground(centre, turn, half, world.ground, places)
+        free &= ~boxes_meet_ground(centre, turn, half, case.ground, places)
     return free
 
 
 def require_usable(path: GuidePath, number: int) -> None:
-    """Refuse a guide path that cannot be walked along.
+    """Refuse a guide path that cannot be followed.
 
     Raises:
         InputError: says which path, and what is wrong with it.

@@ -14,7 +14,9 @@ STATIC_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Wish:
-    """Input of a score, one row per candidate, mirrored to the left leg, in the root frame.
+    """Input of a score, one row per candidate, in the root frame.
+
+    Vectors are mirrored where a leg mirrors its model.
 
     Attributes:
         sample: index of the candidate's sample in the data base.
@@ -53,7 +55,7 @@ def effort(database: LegDatabase, wish: Wish) -> Float[np.ndarray, " N"]:
 
 def reference(database: LegDatabase, wish: Wish) -> Float[np.ndarray, " N"]:
     """Return minus the distance of the joint angles from the reference posture [rad]."""
-    return -np.linalg.norm(database.angles[wish.sample] - database.legs.reference, axis=1)
+    return -np.linalg.norm(database.angles[wish.sample] - database.model.reference, axis=1)
 
 
 HEURISTICS: dict[str, Score] = {

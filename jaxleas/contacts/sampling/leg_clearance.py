@@ -1,41 +1,71 @@
-"""Collision of the two legs with each other, by their capsules, such as foot and shank."""
+"""Collision of the legs with each other, by their capsules, such as foot and shank."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.sampling.limbs import PlacedLegs
-from jaxleas.robots.legs import LegModel
+from jaxleas.contacts.sampling.placed_legs import PlacedLegs
+from jaxleas.robots import Legs, LimbModel
 
 
-def leg_segments(legs: LegModel, placed: PlacedLegs) -> Float[np.ndarray, "N C 2 3"]:
-    """Return the middle lines of the capsules in the world, as two end points each [m]."""
-    capsules = legs.left.capsules
-    links = [each.link for each in capsules]
-    ends = np.array([(each.start, each.end) for each in capsules]).reshape(-1, 2, 3)
-    frames = placed.frames[:, links]
-    return ends @ frames.transpose(0, 1, 3, 2) + placed.origins[:, links, None]
+@dataclass(frozen=True)
+class LegCapsules:
+    """The capsules of legs in the world, one leg per row.
+
+    Attributes:
+        segments: middle lines of the capsules, as two end points each [m].
+        radii: radii of the capsules [m]; minus infinity where a leg has fewer than others.
+    """
+
+    segments: Float[np.ndarray, "N C 2 3"]
+    radii: Float[np.ndarray, "N C"]
+
+    def __getitem__(self, rows) -> "LegCapsules":
+        """Return those of some legs."""
+        return LegCapsules(self.segments[rows], self.radii[rows])
 
 
-def legs_touch(
-    legs: LegModel,
-    one: Float[np.ndarray, "N C 2 3"],
-    other: Float[np.ndarray, "N C 2 3"],
-) -> Bool[np.ndarray, " N"]:
-    """Return whether two legs, given by their segments, are nearer than their radii allow.
+def leg_capsules(legs: Legs, placed: PlacedLegs) -> LegCapsules:
+    """Return the capsules of placed legs.
 
     Args:
-        legs: pair of legs.
-        one: segments of one leg.
-        other: segments of the other leg.
+        legs: legs of the robot.
+        placed: legs in the world.
     """
-    radii = np.array([each.radius for each in legs.left.capsules])
-    first, second = np.indices((len(radii), len(radii))).reshape(2, -1)
+    most = max(len(model.capsules) for model in legs.models)
+    segments = np.zeros((len(placed), most, 2, 3))
+    radii = np.full((len(placed), most), -np.inf)
+    for number, rows in legs.by_model(placed.limb):
+        model = legs.models[number]
+        count = len(model.capsules)
+        if count:
+            segments[rows, :count] = _segments(model, placed.frames[rows], placed.origins[rows])
+            radii[rows, :count] = [each.radius for each in model.capsules]
+    return LegCapsules(segments, radii)
+
+
+def _segments(model: LimbModel, frames: np.ndarray, origins: np.ndarray) -> np.ndarray:
+    links = [each.link for each in model.capsules]
+    ends = np.array([(each.start, each.end) for each in model.capsules]).reshape(-1, 2, 3)
+    return ends @ frames[:, links].transpose(0, 1, 3, 2) + origins[:, links, None]
+
+
+def legs_touch(one: LegCapsules, other: LegCapsules) -> Bool[np.ndarray, " N"]:
+    """Return whether two legs of each row are nearer than the radii of their capsules allow.
+
+    Args:
+        one: capsules of one leg of each row.
+        other: capsules of the other leg.
+    """
+    count, capsules = one.radii.shape
+    first, second = np.indices((capsules, capsules)).reshape(2, -1)
     if not len(first):
-        return np.zeros(len(one), dtype=bool)
-    least = np.repeat(radii[first] + radii[second], len(one))
+        return np.zeros(count, dtype=bool)
+    least = (one.radii[:, first] + other.radii[:, second]).T.reshape(-1)
     pairs = [
-        np.moveaxis(segments[:, which], 1, 0).reshape(-1, 2, 3)
-        for segments, which in ((one, first), (other, second))
+        np.moveaxis(each.segments[:, which], 1, 0).reshape(-1, 2, 3)
+        for each, which in ((one, first), (other, second))
     ]
     near = segment_distance(*pairs) < least
     return np.any(near.reshape(len(first), -1), axis=0)

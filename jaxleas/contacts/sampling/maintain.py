@@ -1,20 +1,21 @@
 """Keep the contacts while the root moves on: within reach, free of collisions, robust."""
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.sampling.leg_clearance import leg_segments, legs_touch
-from jaxleas.contacts.sampling.limbs import (
-    Roots,
+from jaxleas.contacts.sampling.case import PlanningCase
+from jaxleas.contacts.sampling.leg_clearance import leg_capsules, legs_touch
+from jaxleas.contacts.sampling.placed_legs import (
     body_moments,
     legs_collide,
+    mass_moments,
     place_legs,
 )
+from jaxleas.contacts.sampling.roots import Roots
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.contacts.sampling.world import World
-from jaxleas.robots.legs import mass_moment
 
 
 @dataclass(frozen=True)
@@ -23,23 +24,23 @@ class Maintained:
 
     Attributes:
         limb: whether each leg alone can keep its contact.
-        both: whether the posture as a whole is valid: legs clear of each other, robust.
+        whole: whether the posture as a whole is valid: legs clear of each other, robust.
         com: centre of mass in the world [m].
     """
 
-    limb: Bool[np.ndarray, "N 2"]
-    both: Bool[np.ndarray, " N"]
+    limb: Bool[np.ndarray, "N F"]
+    whole: Bool[np.ndarray, " N"]
     com: Float[np.ndarray, "N 3"]
 
 
-def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintained:
+def maintain_contacts(case: PlanningCase, roots: Roots, stances: Stances) -> Maintained:
     """Judge the same contacts at other root poses.
 
     The trunk's collisions depend on the guide path alone and are judged beforehand; the feet have
     not moved since they were judged.
 
     Args:
-        world: robot, scene, settings.
+        case: robot, scene, settings.
         roots: root poses to judge.
         stances: contacts of the robots.
     """
@@ -47,7 +48,7 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     limb = np.tile(np.arange(limbs), count)
     pair = np.repeat(np.arange(count), limbs)
     placed = place_legs(
-        world.legs,
+        case.legs,
         roots[pair],
         limb,
         stances.sole.reshape(-1, 3),
@@ -56,16 +57,15 @@ def maintain_contacts(world: World, roots: Roots, stances: Stances) -> Maintaine
     kept = placed.reachable.copy()
     rows = np.flatnonzero(kept)
     if len(rows):
-        kept[rows] = ~legs_collide(world.legs, placed, rows, world.ground, feet=False)
+        kept[rows] = ~legs_collide(case.legs, placed, rows, case.ground, feet=False)
     kept = kept.reshape(count, limbs)
-    segments = leg_segments(world.legs, placed)
-    segments = segments.reshape(count, limbs, *segments.shape[1:])
-    both = kept.all(axis=1) & ~legs_touch(world.legs, segments[:, 0], segments[:, 1])
-    moments = (
-        mass_moment(world.legs, placed.frames, placed.origins).reshape(count, limbs, 3).sum(axis=1)
-    )
-    com = (body_moments(world.legs, roots) + moments) / world.legs.mass
-    rows = np.flatnonzero(both)
+    whole = np.all(kept, axis=1)
+    capsules = leg_capsules(case.legs, placed)
+    for one, other in combinations(range(limbs), 2):
+        whole &= ~legs_touch(capsules[one::limbs], capsules[other::limbs])
+    moments = mass_moments(case.legs, placed).reshape(count, limbs, 3).sum(axis=1)
+    com = (body_moments(case.legs, roots) + moments) / case.legs.mass
+    rows = np.flatnonzero(whole)
     if len(rows):
-        both[rows] = world.is_robust(stances[rows], com[rows])
-    return Maintained(kept, both, com)
+        whole[rows] = case.is_robust(stances[rows], com[rows])
+    return Maintained(kept, whole, com)

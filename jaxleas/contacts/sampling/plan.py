@@ -9,12 +9,12 @@ from jaxtyping import Float, Int
 How = Literal["start", "kept", "stepped", "repositioned"]
 Ending = Literal["reached", "trunk", "no_start", "no_contact", "repositions", "time_limit"]
 """Why a plan ends: at the last configuration; the trunk touches the scene; no stance to start from;
-neither foot finds a contact that leads on; too many repositions; no time left."""
+no foot finds a contact that leads on; too many repositions; no time left."""
 
 
 @dataclass(frozen=True, eq=False)
 class SamplingPlan:
-    """Postures in double support along a guide path, and how far they reach.
+    """Postures with all feet in contact along a guide path, and how far they reach.
 
     Attributes:
         ending: why the plan ends; "reached" is success.
@@ -24,10 +24,10 @@ class SamplingPlan:
         kept: number of kept configurations.
         index: index of each posture's configuration in the guide path.
         how: way in which each posture came about.
-        moved: limb that was moved for each posture; -1 for none (or both, at the start).
-        soles: positions of left and right sole, in the world [m].
+        moved: limb that was moved for each posture; -1 for none (or all, at the start).
+        soles: positions of all soles, in the order of the robot's feet, in the world [m].
         rotations: rotations of the feet in the world.
-        surfaces: names of the surfaces of left and right foot.
+        surfaces: names of the surfaces of all feet.
         com: centre of mass in the world [m].
         robustness: robustness of equilibrium of each posture [N].
         repositions: number of postures that are repositions.
@@ -43,8 +43,8 @@ class SamplingPlan:
     index: Int[np.ndarray, " S"]
     how: tuple[How, ...]
     moved: Int[np.ndarray, " S"]
-    soles: Float[np.ndarray, "S 2 3"]
-    rotations: Float[np.ndarray, "S 2 3 3"]
+    soles: Float[np.ndarray, "S F 3"]
+    rotations: Float[np.ndarray, "S F 3 3"]
     surfaces: tuple[tuple[str, ...], ...]
     com: Float[np.ndarray, "S 3"]
     robustness: Float[np.ndarray, " S"]

@@ -13,7 +13,7 @@ class SamplingSettings(PlannerSettings):
     """Settings of the sampling-based planner; the defaults are the published ones for Talos."""
 
     samples: Annotated[int, Field(ge=1, le=1_000_000)] = 25_000
-    """leg configurations in the data base"""
+    """configurations of each kind of leg in the data base; mirror images are of one kind"""
     seed: NonNegativeInt = 0
     """of the data base"""
     keep_every: PositiveInt = 5
@@ -31,7 +31,8 @@ class SamplingSettings(PlannerSettings):
     friction_generators: Annotated[int, Field(ge=3, le=64)] = 6
     """of each contact point's cone, turned with the foot: more refuse fewer tilted stones"""
     max_tries: PositiveInt = 2
-    """failures in a row, each but the last mended by a reposition, after which to stop"""
+    """failures in a row, each but the last mended by a reposition, after which to stop; robots with
+    more than two feet have as many times the repositions as there are other feet"""
     max_repositions: NonNegativeInt = 20
     """of a whole plan"""
     moved: PositiveFloat = 0.01

@@ -6,26 +6,27 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.contacts.sampling.ground import Ground
-from jaxleas.contacts.sampling.limbs import SIDES
+from jaxleas.robots import Legs
 
 
 @dataclass(frozen=True, eq=False)
 class Stances:
-    """Contacts of left and right foot, one row per robot.
+    """Contacts of all feet, one row per robot.
 
     Attributes:
         sole: position of the middle of the sole, in the world [m].
         rotation: rotation of the foot in the world; the third column is the surface's normal.
         surface: index of the ground's polygon; -1 without a contact.
-        corners: corners of the part of the sole that is over its surface, in the world [m].
+        corners: corners of the part of the sole that is over its surface, in the world, as many for
+            each foot as `Legs.corners` has [m].
         since: order in which contacts were made: the smaller, the older.
     """
 
-    sole: Float[np.ndarray, "N 2 3"]
-    rotation: Float[np.ndarray, "N 2 3 3"]
-    surface: Int[np.ndarray, "N 2"]
-    corners: Float[np.ndarray, "N 2 4 3"]
-    since: Int[np.ndarray, "N 2"]
+    sole: Float[np.ndarray, "N F 3"]
+    rotation: Float[np.ndarray, "N F 3 3"]
+    surface: Int[np.ndarray, "N F"]
+    corners: Float[np.ndarray, "N F C 3"]
+    since: Int[np.ndarray, "N F"]
 
     def __getitem__(self, rows) -> "Stances":
         """Return some of the stances (a copy where `rows` are indices)."""
@@ -42,15 +43,15 @@ class Stances:
         return len(self.sole)
 
 
-def no_stances(count: int) -> Stances:
+def no_stances(legs: Legs, count: int) -> Stances:
     """Return stances without contacts, to be filled in."""
-    limbs = len(SIDES)
+    feet, corners = legs.corners.shape[:2]
     return Stances(
-        sole=np.zeros((count, limbs, 3)),
-        rotation=np.broadcast_to(np.eye(3), (count, limbs, 3, 3)).copy(),
-        surface=np.full((count, limbs), -1),
-        corners=np.zeros((count, limbs, 4, 3)),
-        since=np.zeros((count, limbs), dtype=np.int64),
+        sole=np.zeros((count, feet, 3)),
+        rotation=np.broadcast_to(np.eye(3), (count, feet, 3, 3)).copy(),
+        surface=np.full((count, feet), -1),
+        corners=np.zeros((count, feet, corners, 3)),
+        since=np.zeros((count, feet), dtype=np.int64),
     )
 
 
@@ -59,21 +60,20 @@ def support_corners(
     sole: Float[np.ndarray, "N 3"],
     rotation: Float[np.ndarray, "N 3 3"],
     surface: Int[np.ndarray, " N"],
-    half_size: tuple[float, float],
-) -> Float[np.ndarray, "N 4 3"]:
+    corners: Float[np.ndarray, "N C 2"],
+) -> Float[np.ndarray, "N C 3"]:
     """Return the sole's corners, each moved towards its middle until it is over the surface.
 
-    The four points span part of the area that really touches, never more.
+    The points span part of the area that really touches, never more.
 
     Args:
         ground: polygons of the scene.
         sole: middle of the sole, over the surface [m].
         rotation: rotation of the foot.
         surface: index of the surface that it stands on.
-        half_size: half length and half width of the sole [m].
+        corners: corners of the sole in its frame [m].
     """
-    signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * half_size
-    reach = signs @ rotation[:, :, :2].transpose(0, 2, 1)  # [N, corner, 3]
+    reach = corners @ rotation[:, :, :2].transpose(0, 2, 1)  # [N, corner, 3]
     inward = ground.inward[surface]  # [N, W, 3]
     room = (inward @ sole[:, :, None])[:, :, 0] - ground.inward_offsets[surface]
     outwards = -(reach @ inward.transpose(0, 2, 1))  # [N, corner, W]

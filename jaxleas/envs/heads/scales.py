@@ -8,9 +8,8 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.geometry.rotations import bound_norm
-from jaxleas.types.errors import InputError
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.geometry import bound_norm
+from jaxleas.types import InputError, OnnxNodes
 
 
 class Scale(Protocol):

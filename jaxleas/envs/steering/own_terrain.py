@@ -16,9 +16,8 @@ from scipy.spatial import KDTree
 
 from jaxleas.conditions import Collision, StrictReachability, all_of, footprint_points
 from jaxleas.robots import Robot
-from jaxleas.terrain.atlas import make_atlas
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.types import InputError, RootMotion
+from jaxleas.terrain import HeightMap, make_atlas
+from jaxleas.types import InputError, RootMotion, is_ground
 
 NEAREST, FARTHEST = 1.5, 6.0
 """Distance from a start to its goal, and from goal to goal [m]."""
@@ -139,7 +138,7 @@ def _standing_places(
     robot: Robot, height_map: HeightMap, chance: np.random.Generator
 ) -> Float[np.ndarray, "N 2"]:
     """Return places, drawn at random from all ground, where R* and C hold for some heading."""
-    ground = np.flatnonzero(~np.isnan(height_map.heights))
+    ground = np.flatnonzero(is_ground(height_map.heights))
     tried = chance.choice(ground, min(len(ground), 4 * MOST_PLACES), replace=False)
     rows, columns = np.divmod(tried, height_map.shape[1])
     inside = chance.uniform(-0.5, 0.5, (len(tried), 2))

@@ -7,14 +7,13 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.envs.environment import Starts
-from jaxleas.envs.starts import pool_of, take
+from jaxleas.envs import Starts, pool_of, take
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import OwnStarts, draw_own_starts
+from jaxleas.envs.steering.standing import standing_position
 from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
 from jaxleas.envs.steering.world import World
-from jaxleas.types import RootMotion
-from jaxleas.types.ground import is_ground
+from jaxleas.types import RootMotion, is_ground
 
 FOREVER = 2**30  # steps
 
@@ -112,7 +111,9 @@ def _draw_motion(
     low, high = env.robot.start_heights
     spread = jax.random.uniform(height_key, (*shape, 1), minval=low, maxval=high)
     return RootMotion(
-        position=_stand(env, world, world.map_index[link], horizontal).at[:, 2:].add(spread),
+        position=standing_position(env.robot, world.atlas, world.map_index[link], horizontal)
+        .at[:, 2:]
+        .add(spread),
         velocity=jnp.stack(
             [speed * jnp.cos(yaw), speed * jnp.sin(yaw), jnp.zeros_like(yaw)], axis=-1
         ),
@@ -126,7 +127,9 @@ def _put_on_files(
     """Return plans and motions, replaced where a candidate starts on a terrain file."""
     low, high = env.robot.start_heights
     spread = jax.random.uniform(key, (len(own.chosen), 1), minval=low, maxval=high)
-    position = _stand(env, world, own.map_index, own.start).at[:, 2:].add(spread)
+    position = (
+        standing_position(env.robot, world.atlas, own.map_index, own.start).at[:, 2:].add(spread)
+    )
     plan = plan.replace(  # type: ignore[attr-defined]
         map_index=jnp.where(own.chosen, own.map_index, plan.map_index),
         goals=jnp.where(own.chosen[:, None, None], own.goals, plan.goals),
@@ -140,20 +143,10 @@ def _arrival(env: SteeringEnv, world: World, motion: RootMotion, plan: Plan) -> 
     goal = plan.goals[:, 0]
     offset = goal - motion.position[:, :2]
     return RootMotion(
-        position=_stand(env, world, plan.map_index, goal),
+        position=standing_position(env.robot, world.atlas, plan.map_index, goal),
         velocity=jnp.zeros_like(motion.velocity),
         yaw=jnp.arctan2(offset[:, 1], offset[:, 0]),
     )
-
-
-def _stand(
-    env: SteeringEnv, world: World, map_index: Array, horizontal: Float[Array, "batch 2"]
-) -> Float[Array, "batch 3"]:
-    """Return root positions at walking height over the ground."""
-    ground = world.atlas.height_at(map_index, horizontal[:, None, :])
-    # A root at walking height over the void would see the void as ground and count as valid.
-    ground = jnp.where(is_ground(ground), ground, 0.0)
-    return jnp.concatenate([horizontal, ground + env.robot.walking_height], axis=-1)
 
 
 def _draw_plan(env: SteeringEnv, world: World, link: Array, key: Array) -> Plan:

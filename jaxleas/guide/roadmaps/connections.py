@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.guide.places import Places
 from jaxleas.guide.rollout import RollOut, Trips, paths, roll_out
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.types import GuidePath, RootMotion, is_ground
+from jaxleas.types import GuidePath, RootMotion
 
 BATCH = 64
 """Connections walked in one compiled call: fewer leave the vector units idle."""
@@ -62,7 +62,7 @@ class Connector:
             padded = [*starts[some], *[starts[first]] * (BATCH - count)]
             motion = jax.tree.map(lambda *leaves: np.stack(leaves), *padded)
             aim = np.concatenate([targets[some], np.repeat(targets[first, None], BATCH - count, 0)])
-            walked = self._walk(motion, self._lifted(aim)[:, None], self.steps)
+            walked = self._walk(motion, self.places.standing_positions(aim)[:, None], self.steps)
             end = np.asarray(walked.end)
             reached.append(np.asarray(walked.reached)[:count])
             arrivals.append(_at(walked, end, count))
@@ -87,7 +87,7 @@ class Connector:
         # The last waypoint is repeated: each copy is reached at once.
         repeated = np.concatenate([waypoints, np.repeat(waypoints[-1:], size - len(waypoints), 0)])
         motion = jax.tree.map(lambda leaf: np.asarray(leaf)[None], start)
-        walked = self._walk(motion, self._lifted(repeated)[None], MOST_STEPS)
+        walked = self._walk(motion, self.places.standing_positions(repeated)[None], MOST_STEPS)
         (guide_path,) = paths(walked, self.places.env.config.limits.time_step)
         return guide_path, bool(walked.reached[0]), bool(walked.invalid[0])
 
@@ -95,11 +95,6 @@ class Connector:
         map_index = jnp.zeros(len(waypoints), jnp.int32)
         trips = Trips(self.places.atlas, map_index, motion, jnp.asarray(waypoints))
         return roll_out(self.places.env, self.method, trips, steps, self.radius)
-
-    def _lifted(self, places: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "N 3"]:
-        height = self.places.root_height(places)
-        height = np.where(is_ground(height), height, self.places.env.robot.walking_height)
-        return np.column_stack([places, height]).astype(np.float32)
 
 
 def one(motion: RootMotion, index: int) -> RootMotion:

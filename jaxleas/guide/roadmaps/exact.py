@@ -10,9 +10,7 @@ from jaxtyping import Bool
 from jaxleas.conditions import exact_collision, exact_strict_reachability
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
-from jaxleas.terrain.mesh_scene import mesh_to_scene
-from jaxleas.terrain.meshes import SUFFIXES, Up
-from jaxleas.terrain.scene import Scene, read_scene
+from jaxleas.terrain import READING, Reading, Scene, has_polygons, load_scene
 from jaxleas.types import GuidePath, InputError, RootMotion
 
 NEAR = 0.1 * np.arange(1, 11)
@@ -20,7 +18,7 @@ NEAR = 0.1 * np.arange(1, 11)
 
 
 @dataclass(frozen=True)
-class ExactVerdict:
+class ExactCheck:
     """The answer of the exact conditions for a path.
 
     Attributes:
@@ -35,7 +33,7 @@ class ExactVerdict:
     colliding: int
 
     def __str__(self) -> str:
-        """Return the verdict as part of a sentence."""
+        """Return the answer as part of a sentence."""
         if not (self.unreachable or self.colliding):
             return f"the exact conditions hold at all {self.configurations} configurations"
         refused = [
@@ -49,13 +47,9 @@ class ExactVerdict:
         )
 
 
-def scene_of(terrain: Path, up: Up = "z", scale: float = 1.0) -> Scene | None:
+def scene_of(terrain: Path, reading: Reading = READING) -> Scene | None:
     """Return the polygons of a terrain file; None for a map or an image, which has none."""
-    if terrain.suffix.lower() == ".json":
-        return read_scene(terrain)
-    if terrain.suffix.lower() in SUFFIXES:
-        return mesh_to_scene(terrain, up, scale)
-    return None
+    return load_scene(terrain, reading) if has_polygons(terrain) else None
 
 
 def refusals(
@@ -73,7 +67,7 @@ def refusals(
     return ~reached, ~free
 
 
-def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
+def check_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactCheck:
     """Count the configurations of a path that the exact twins of R* and C refuse.
 
     Args:
@@ -82,7 +76,7 @@ def judge_exactly(robot: Robot, scene: Scene, path: GuidePath) -> ExactVerdict:
         path: guide path of the root.
     """
     unreachable, colliding = refusals(robot, scene, path)
-    return ExactVerdict(len(path), int(unreachable.sum()), int(colliding.sum()))
+    return ExactCheck(len(path), int(unreachable.sum()), int(colliding.sum()))
 
 
 def require_exact_start(places: Places, scene: Scene, start: RootMotion) -> None:

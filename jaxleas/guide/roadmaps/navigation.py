@@ -13,8 +13,9 @@ from jaxleas.guide.places import on_host
 from jaxleas.guide.roadmaps.budget import Budget
 from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.ledger import Key, Ledger, key_of
+from jaxleas.guide.roadmaps.prm import Prm, search_prm
+from jaxleas.guide.roadmaps.rrt import Rrt, search_rrt
 from jaxleas.guide.roadmaps.samples import Samples
-from jaxleas.guide.roadmaps.search import Prm, Rrt, search_prm, search_rrt
 from jaxleas.types import GuidePath, RootMotion
 
 SHORTENINGS = 8

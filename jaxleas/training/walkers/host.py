@@ -9,8 +9,7 @@ import jax
 import numpy as np
 from jax import Array
 
-from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool, as_numpy
+from jaxleas.envs import HostPool, Task, as_numpy
 from jaxleas.training.config import RunConfig
 from jaxleas.training.failures import counted_on_host, start_metrics
 from jaxleas.training.loss import Experience

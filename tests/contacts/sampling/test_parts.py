@@ -5,15 +5,15 @@ from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import near_candidates
-from jaxleas.contacts.sampling.database import align, leg_database, make_database
+from jaxleas.contacts.sampling.case import make_case
+from jaxleas.contacts.sampling.database import align, leg_databases, make_database
 from jaxleas.contacts.sampling.ground import ground_from
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import segment_distance
 from jaxleas.contacts.sampling.settings import SamplingSettings
-from jaxleas.contacts.sampling.two_point import com_exists
-from jaxleas.contacts.sampling.world import make_world
+from jaxleas.contacts.sampling.two_point import Soles, com_exists, com_region
 from jaxleas.robots import load_talos
-from jaxleas.robots.legs import load_talos_legs
+from jaxleas.robots.legs import legs_of
 from tests.contacts.sampling.worlds import stairs, straight
 
 
@@ -86,15 +86,15 @@ def random_polygons() -> list[np.ndarray]:
 
 
 def test_the_database_begins_with_the_reference_and_grows_with_its_size():
-    legs = load_talos_legs()
-    database = leg_database(load_talos(), 25_000, 0)
+    left = load_talos().limbs[0].model
+    (database,) = leg_databases(load_talos(), 25_000, 0).each
     assert database.drawn == 25_000
     assert 5_000 < len(database) < 25_000
-    assert (np.linalg.norm(database.angles - legs.reference, axis=1) < 1e-9).sum() == 1
+    assert (np.linalg.norm(database.angles - left.reference, axis=1) < 1e-9).sum() == 1
     assert (np.diff(database.heights) >= 0.0).all()
-    assert (database.angles >= legs.lower).all()
-    assert (database.angles <= legs.upper).all()
-    assert len(make_database(legs, 1000, 0)) < len(database)
+    assert (database.angles >= left.chain.lower).all()
+    assert (database.angles <= left.chain.upper).all()
+    assert len(make_database(left, 1000, 0)) < len(database)
     assert database.manipulability.max() == 1.0
 
 
@@ -113,16 +113,16 @@ def test_align_turns_the_normal_by_the_smallest_angle():
 
 def test_candidates_are_all_samples_near_a_surface_best_first():
     settings = SamplingSettings(samples=4000, stages=(100_000,))
-    world = make_world(load_talos(), [stairs()], settings)
-    guides = keep_configurations(world, [straight(2.0, climbing=True)], [0])
+    case = make_case(load_talos(), [stairs()], settings)
+    guides = keep_configurations(case, [straight(2.0, climbing=True)], [0])
     guide, at, limb = np.array([0, 0]), np.array([8, 12]), np.array([0, 1])
     aim = guides.aim(guide, at, limb)
-    found = near_candidates(world, aim)
+    found = near_candidates(case, aim)
     for row in range(2):
         mine = {*zip(found.sample[found.row == row], found.surface[found.row == row], strict=True)}
         expected = set()
         mirror = np.array([1.0, (1.0, -1.0)[limb[row]], 1.0])
-        soles = world.database.soles * mirror + aim.roots.position[row]  # the yaw is zero
+        soles = case.databases.soles * mirror + aim.roots.position[row]  # the yaw is zero
         for index, (name, polygon) in enumerate(stairs().surfaces.items()):
             del name
             low, high = polygon.min(axis=0), polygon.max(axis=0)
@@ -132,8 +132,8 @@ def test_candidates_are_all_samples_near_a_surface_best_first():
         assert mine == expected
         assert len(mine) > 50
         samples = found.sample[found.row == row]
-        score = 0.1 * world.database.manipulability[samples] - (
-            (world.database.soles[samples] - aim.target[row]) ** 2
+        score = 0.1 * case.databases.each[0].manipulability[samples] - (
+            (case.databases.soles[samples] - aim.target[row]) ** 2
         ).sum(axis=1)
         assert (np.diff(score) <= 1e-12).all()
         np.testing.assert_array_equal(found.rank[found.row == row], np.arange(len(samples)))
@@ -154,7 +154,7 @@ def test_segment_distance_is_the_least_over_a_grid():
 
 def test_two_points_agree_with_a_linear_program():
     rng = np.random.default_rng(10)
-    polytope = load_talos_legs().com_in_foot
+    polytope = load_talos().limbs[0].model.com_reach
     count = 80
     yaw = rng.uniform(-0.5, 0.5, (count, 2))
     turns = Rotation.from_euler("z", yaw.reshape(-1, 1)).as_matrix().reshape(count, 2, 3, 3)
@@ -168,9 +168,10 @@ def test_two_points_agree_with_a_linear_program():
     )
     half = np.array([[0.1, 0.06], [-0.1, 0.06], [-0.1, -0.06], [0.1, -0.06]])
     corners = half @ turns[:, 0, :, :2].transpose(0, 2, 1)
-    found = com_exists(
-        polytope, np.zeros((count, 3)), turns[:, 0], corners, apart, turns[:, 1], side
-    )
+    legs, origin = legs_of(load_talos()), np.zeros((count, 3))
+    limb = np.where(side > 0.0, 0, 1)
+    standing = Soles(limb[:, None], origin[:, None], turns[:, :1], corners[:, None])
+    found = com_exists(legs, com_region(legs, standing), 1 - limb, apart, turns[:, 1])
     expected = []
     for index in range(count):
         A, b = [], []

@@ -7,7 +7,7 @@ from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
 from jaxleas.dynamics import ContactPoints, robustness_of
 from jaxleas.robots import load_talos
-from jaxleas.robots.legs import leg_angles, load_talos_legs
+from jaxleas.robots.legs import legs_of
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.scene import Scene
@@ -33,7 +33,7 @@ def test_four_metres_of_stairs_are_climbed(climb):
 
 def test_every_posture_stands_on_its_surfaces_within_the_joint_limits(climb):
     scene, path, plan = climb
-    legs = load_talos_legs()
+    left = load_talos().limbs[0].model
     for index, soles, rotations, names in zip(
         plan.index, plan.soles, plan.rotations, plan.surfaces, strict=True
     ):
@@ -47,7 +47,7 @@ def test_every_posture_stands_on_its_surfaces_within_the_joint_limits(climb):
             np.testing.assert_allclose(rotation[:, 2], [0.0, 0.0, 1.0], atol=1e-9)
             mirror = np.diag([1.0, side, 1.0])
             local = mirror @ (sole - path.position[index])  # the yaw is zero
-            assert leg_angles(legs, local, mirror @ rotation @ mirror)[1]
+            assert left.inverse(local, mirror @ rotation @ mirror)[1]
 
 
 def test_robustness_is_that_of_the_linear_program(climb):
@@ -78,7 +78,7 @@ def test_robustness_is_that_of_the_linear_program(climb):
             ahead=axes[:, :, 0],
             generators=SamplingSettings().friction_generators,
         )
-        expected = robustness_of(contacts, plan.com[which], mass=load_talos_legs().mass)
+        expected = robustness_of(contacts, plan.com[which], mass=legs_of(load_talos()).mass)
         np.testing.assert_allclose(plan.robustness[which], expected, rtol=1e-6)
 
 

@@ -10,6 +10,7 @@ from jaxleas.terrain import Scene, write_height_map, write_scene
 from jaxleas.terrain.rasterise import rasterise
 from tests.robustness.hostile_files import binary_mutations as b
 from tests.robustness.hostile_files import mutations as m
+from tests.robustness.hostile_files.imported_kinds import imported_kinds
 from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 
@@ -52,6 +53,9 @@ def terrain_kinds(folder: Path) -> list[Kind]:
     (folder / "text.stl").write_text(f"solid x\n{text}endsolid x\n")
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + ["f 1 2 3 4", "f 4/1/1 3//2 5"]
     (folder / "mesh.obj").write_text("# a mesh\nmtllib x.mtl\nvt 0 0\n" + "\n".join(lines) + "\n")
+    concave = [(0, 0), (4, 0), (4, 4), (3, 4), (3, 1), (1, 1), (1, 4), (0, 4)]
+    outline = "\n".join([*(f"v {x} {y} 0" for x, y in concave), "f 1 2 3 4 \\", " 5 6 7 8\n"])
+    (folder / "concave.obj").write_text(outline)
 
     def mesh(path: Path) -> None:
         import_terrain(path, resolution=0.5)
@@ -71,4 +75,6 @@ def terrain_kinds(folder: Path) -> list[Kind]:
             partial(import_png, resolution=0.1, z_min=0.0, z_max=1.0),
             b.mutate_png,
         ),
+        kind_of("concave OBJ", folder / "concave.obj", mesh, m.mutate_text),
+        *imported_kinds(folder),
     ]

@@ -1,0 +1,83 @@
+"""One file, one truth: a mesh's scene and its height map must show the same ground."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION, rasterise_polygons
+from jaxleas.terrain.scene import Scene
+from jaxleas.types import InputError, is_ground
+
+ALLOWED = 0.02
+"""Fraction of the ground that may differ: faces that are left out are smaller than a foot."""
+SAME = 0.03
+"""Difference of heights that counts as none [m]."""
+_CELLS_ACROSS = 500  # fine enough for a comparison, whatever the size
+_GROW = 1e-3  # seams between neighbours in real meshes [m]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How a mesh's scene agrees with its height map.
+
+    The map takes the highest face over each point; the scene takes faces that look up. They
+    differ where the highest face looks down: a ceiling, or a face wound the wrong way round.
+
+    Attributes:
+        differing: fraction of the ground that the scene lacks, or shows lower.
+        place: x and y of such a place [m].
+        mean_gap: mean height of the map above the scene, of which 3 cm count at most [m].
+    """
+
+    differing: float
+    place: tuple[float, float]
+    mean_gap: float
+
+
+def compare(triangles: Float[np.ndarray, "N 3 3"], scene: Scene) -> Agreement:
+    """Return how a scene agrees with the height map of the mesh that it is made of.
+
+    Args:
+        triangles: triangles of the mesh [m].
+        scene: scene made of them.
+    """
+    across = np.ptp(triangles[..., :2].reshape(-1, 2), axis=0).max()
+    resolution = min(max(DEFAULT_RESOLUTION, float(across) / _CELLS_ACROSS), 0.5)
+    # A triangle without area keeps both maps in one frame.
+    low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
+    frame = np.array([low, high, high])
+    ground = _heights([*triangles, frame], resolution)
+    seen = _heights([*scene.surfaces.values(), *scene.obstacles.values(), frame], resolution)
+    some = is_ground(ground)
+    gap = np.where(is_ground(seen), np.clip(ground - seen, 0.0, SAME), SAME)[some]
+    differs = some & ~(ground - seen < SAME)
+    places = np.argwhere(differs)
+    row, column = places[len(places) // 2] if len(places) else (0, 0)
+    x, y = (np.floor(low[:2] / resolution) + 0.5 + [column, row]) * resolution
+    count = max(int(some.sum()), 1)
+    return Agreement(differs.sum() / count, (float(x), float(y)), float(gap.sum()) / count)
+
+
+def require_agreement(path: str | Path, found: Agreement) -> None:
+    """Refuse a mesh whose height map shows ground that its scene lacks.
+
+    Args:
+        path: path of the mesh, for the message.
+        found: how its scene agrees with its height map.
+
+    Raises:
+        InputError: they differ on more than 2 % of the ground.
+    """
+    if found.differing > ALLOWED:
+        x, y = found.place
+        raise InputError(
+            f"{path}: on {100.0 * found.differing:.0f} % of its ground, such as at {x:.2f},{y:.2f},"
+            " the highest face looks down: a height map would show ground that a scene lacks; cut"
+            " off a roof or ceiling, or turn the normals of that face"
+        )
+
+
+def _heights(polygons: list[np.ndarray], resolution: float) -> Float[np.ndarray, "R C"]:
+    return rasterise_polygons(polygons, resolution, 0.0, _GROW).heights

@@ -1,0 +1,98 @@
+"""TIFF and GeoTIFF files as heights, by tifffile."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jaxleas.terrain.foreign.answers import Answer, RefusedError
+
+MAX_CELLS = 64_000_000
+_GEOGRAPHIC = 2  # GTModelTypeGeoKey of maps in degrees
+_PLACE = {33550: "ModelPixelScale", 33922: "ModelTiepoint", 34264: "ModelTransformation"}
+"""Tags that may stand without keys that say what they mean."""
+_FEET = {9002: 0.3048, 9003: 1200.0 / 3937.0}
+"""Metres per linear unit, by its EPSG code."""
+
+
+def load() -> None:
+    """Load the libraries."""
+    import imagecodecs  # noqa: F401
+    import tifffile  # noqa: F401
+
+
+def read(path: Path, options: dict[str, Any]) -> Answer:
+    """Return `heights` as the file has them, its south row first, NaN where it states no data.
+
+    Further arrays: `whole`, whether its values are whole numbers, and `levels`, how many of them
+    its bits can state; if it is georeferenced also `cell` [m] and `corner`, x and y of the middle
+    of the south-west cell [m].
+    """
+    import tifffile
+
+    del options
+    notes: list[str] = []
+    with tifffile.TiffFile(path) as file:
+        page = file.pages[0]
+        if not isinstance(page, tifffile.TiffPage):
+            raise RefusedError("has no image")
+        if page.imagewidth * page.imagelength > MAX_CELLS:
+            raise RefusedError(
+                f"has {page.imagewidth} x {page.imagelength} pixels, more than {MAX_CELLS}"
+            )
+        tags = {name: page.tags[code].value for code, name in _PLACE.items() if code in page.tags}
+        tags |= page.geotiff_tags or {}
+        values = page.asarray()
+        nodata = page.nodata if 42113 in page.tags else None
+        bits = int(page.bitspersample)
+        if len(file.pages) > 1:
+            notes.append(f"has {len(file.pages)} images; the first one is read")
+    if values.ndim == 3:
+        values, more = _one_band(values)
+        notes.extend(more)
+    if values.ndim != 2 or values.dtype.kind not in "fiu":
+        raise RefusedError(f"holds {values.dtype} of shape {values.shape}; a map has one band")
+    heights = values.astype(np.float64)
+    if nodata is not None and np.isfinite(nodata):
+        heights[values == np.asarray(nodata).astype(values.dtype)] = np.nan
+    arrays = {"heights": heights[::-1], "whole": values.dtype.kind != "f", "levels": 2.0**bits}
+    return Answer(arrays | _place(tags, values.shape), notes)
+
+
+def _one_band(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Return the grey of an image of several bands, bands last or first."""
+    if values.shape[-1] > 4 >= values.shape[0]:
+        values = np.moveaxis(values, 0, -1)
+    if values.shape[-1] > 4:
+        raise RefusedError(f"has {values.shape[-1]} bands; a map has one")
+    if values.shape[-1] < 3 or all((values[..., k] == values[..., 0]).all() for k in (1, 2)):
+        return values[..., 0], []
+    return values[..., :3] @ np.array([0.299, 0.587, 0.114]), ["is coloured; its grey is read"]
+
+
+def _place(tags: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
+    """Return the edge of a cell and the middle of the south-west one, if the file states them."""
+    scale, tie = tags.get("ModelPixelScale"), tags.get("ModelTiepoint")
+    matrix = tags.get("ModelTransformation")
+    if matrix is not None:
+        matrix = np.asarray(matrix, np.float64).reshape(4, 4)
+        if abs(matrix[0, 1]) + abs(matrix[1, 0]) > 1e-9 * abs(matrix[0, 0]):
+            raise RefusedError("is turned against its axes; warp it to them first")
+        step = matrix[0, 0], -matrix[1, 1]
+        left, top = matrix[0, 3], matrix[1, 3]
+    elif scale is not None and tie is not None:
+        step = float(scale[0]), float(scale[1])
+        tie = np.asarray(tie, np.float64).reshape(-1)[:6]
+        left, top = tie[3] - tie[0] * step[0], tie[4] + tie[1] * step[1]
+    else:
+        return {}
+    if int(tags.get("GTModelTypeGeoKey", 0)) == _GEOGRAPHIC:
+        raise RefusedError("is in degrees; warp it to metres first, such as UTM")
+    unit = _FEET.get(int(tags.get("ProjLinearUnitsGeoKey", 9001)), 1.0)
+    if not (step[0] > 0.0 and abs(step[0] - step[1]) < 1e-3 * step[0]):
+        raise RefusedError(f"has cells of {step[0]:g} x {step[1]:g}; a map has square ones")
+    point = int(tags.get("GTRasterTypeGeoKey", 1)) == 2  # then the tie is a middle, not a corner
+    half = 0.0 if point else 0.5
+    x = left + half * step[0]
+    y = top - (shape[0] - 1 + half) * step[1]
+    return {"cell": step[0] * unit, "corner": np.array([x, y]) * unit}
