@@ -20,9 +20,8 @@ from jaxleas.cli_guard import UsageError, run_guarded
 
 # JAX takes a second to import: not before the command line is parsed.
 if TYPE_CHECKING:
-    from jaxleas.runs.folder import RunFolder
-    from jaxleas.training.config import RunConfig
-    from jaxleas.training.devices import Devices
+    from jaxleas.runs import RunFolder
+    from jaxleas.training import Devices, RunConfig
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -50,9 +49,7 @@ def _train_together(
 ) -> None:
     """Train with other processes: process 0 opens the run and sends its configuration."""
     from jaxleas.files import parse_json
-    from jaxleas.training.devices import choose_devices
-    from jaxleas.training.processes import connect, disconnect, from_first
-    from jaxleas.training.run_config import parse_run_config
+    from jaxleas.training import choose_devices, connect, disconnect, from_first, parse_run_config
 
     opened = []
 
@@ -74,10 +71,9 @@ def _train_together(
 def _open(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
 ) -> "tuple[RunConfig, Devices, RunFolder]":
-    from jaxleas.configuration.loading import to_yaml
-    from jaxleas.runs.folder import RunFolder
-    from jaxleas.runs.watching import require_watchers
-    from jaxleas.training.run_config import load_run_config, make_task, pinned
+    from jaxleas.configuration import to_yaml
+    from jaxleas.runs import RunFolder, require_watchers
+    from jaxleas.training import load_run_config, make_task, pinned
 
     if given.resume:
         found = RunFolder.open(given.resume, needs_checkpoint=False)
@@ -96,8 +92,7 @@ def _open(
 
 
 def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
-    from jaxleas.training.cores import share_cores
-    from jaxleas.training.devices import choose_devices
+    from jaxleas.training import choose_devices, share_cores
 
     if given.coordinator is None:  # several processes share the cores among themselves
         share_cores(config.ppo)
@@ -107,8 +102,8 @@ def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
 def _train(
     config: "RunConfig", devices: "Devices", run: "RunFolder | None", allow: Sequence[str]
 ) -> None:
-    from jaxleas.training.loop import assist, train
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.training import assist, train
+    from jaxleas.xla import keep_compiled_programs
 
     keep_compiled_programs()
     if run is None:
@@ -120,13 +115,13 @@ def _train(
 def _conclude(config: "RunConfig", run: "RunFolder", allow: Sequence[str]) -> None:
     if not config.final.evaluate:
         return
-    from jaxleas.evaluation.suites import SUITED_TASKS
-    from jaxleas.export.commands import export
+    from jaxleas.evaluation import SUITED_TASKS
+    from jaxleas.export import export
 
     if config.env.task not in SUITED_TASKS:  # judged by its own examination alone
         export(run.path, allow=tuple(allow))
         return
-    from jaxleas.reports.commands import evaluate, report
+    from jaxleas.reports import evaluate, report
 
     evaluate(run.path, starts=config.final.starts)
     export(run.path)

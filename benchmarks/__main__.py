@@ -40,9 +40,8 @@ def main(arguments: Sequence[str]) -> None:
     from benchmarks.rival import default_python, require_rival
     from benchmarks.suite import choose, measure
     from benchmarks.table import show
-    from jaxleas.training.cores import share_cores
-    from jaxleas.training.run_config import load_run_config
-    from jaxleas.types.errors import InputError, JaxleasError
+    from jaxleas.training import load_run_config, share_cores
+    from jaxleas.types import InputError, JaxleasError
 
     class SlowerError(JaxleasError):
         exit_code = 1
@@ -114,7 +113,7 @@ def _require_writable(path: Path) -> None:
 def _require_device(device: str | None) -> None:
     import jax
 
-    from jaxleas.types.errors import InputError
+    from jaxleas.types import InputError
 
     try:
         # By name: if it is only asked for its devices, JAX silently falls back to the processor.

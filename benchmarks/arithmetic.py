@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import jax.numpy as jnp
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import ACTION_SIZE
-from jaxleas.envs.steering.state import GOALS
-from jaxleas.training.run_config import AnyRun
+from jaxleas.envs.steering import ACTION_SIZE, GOALS, SteeringEnv
+from jaxleas.training import AnyRun
 
 FLOAT = 4  # bytes
 LOGITS = 2 * ACTION_SIZE  # a mean and a deviation for each component of an action

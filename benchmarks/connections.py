@@ -18,14 +18,8 @@ import numpy as np
 from benchmarks.measurements import Figure, Measurement, Metric, this_machine, write_measurements
 from benchmarks.timing import seconds_a_call
 from jaxleas.cli_guard import run_guarded
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.guide import rb_kino
-from jaxleas.guide.double_integrator import axis_times, connect
-from jaxleas.guide.registry import KINO
-from jaxleas.guide.roadmaps import Places
-from jaxleas.guide.roadmaps.connections import BATCH, one
-from jaxleas.guide.roadmaps.tuning import make_navigator
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.guide import BATCH, KINO, Places, axis_times, connect, make_navigator, one, rb_kino
 from jaxleas.terrain import rasterise, transition
 from jaxleas.types import RootMotion
 from tests.guide.integrator_twin import can_last, least_time_twin, random_connections

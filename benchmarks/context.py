@@ -8,11 +8,8 @@ from typing import Any
 from benchmarks.arithmetic import env_limit, ppo_limit, step_work
 from benchmarks.rival import Rival
 from benchmarks.roofs import Roofs
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.task import Steering
-from jaxleas.envs.steering.world import World
-from jaxleas.training.run_config import AnyRun, load_run_config
-from jaxleas.training.worlds import training_world
+from jaxleas.envs.steering import Steering, SteeringEnv, World
+from jaxleas.training import AnyRun, load_run_config, training_world
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / "configs" / "leas_p1.yaml"

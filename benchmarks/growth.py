@@ -15,9 +15,9 @@ from benchmarks.workloads.environment import ARENAS as ENV_ARENAS
 from benchmarks.workloads.environment import SIZES as ENV_SIZES
 from benchmarks.workloads.training import ARENAS, AS_SHIPPED, SIZES, WIDTHS, memory_name
 from jaxleas.cli_guard import UsageError, run_guarded
-from jaxleas.envs.steering.layout import ICRA81, THESIS144
+from jaxleas.envs.steering import ICRA81, THESIS144
 from jaxleas.files import atomic_path
-from jaxleas.training.run_config import run_config_of
+from jaxleas.training import run_config_of
 from jaxleas.types import InputError
 
 SHIPPED = run_config_of("steering")()

@@ -11,10 +11,10 @@ from typing import Literal, Self
 import jax
 from pydantic import ValidationError
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.files import read_json, write_json
-from jaxleas.training.cores import cores
-from jaxleas.types.errors import InputError
+from jaxleas.training import cores
+from jaxleas.types import InputError
 
 Better = Literal["higher", "lower"]
 

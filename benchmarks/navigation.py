@@ -19,19 +19,26 @@ from pathlib import Path
 import numpy as np
 
 from jaxleas.cli_guard import run_guarded
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
-from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import CellResult, Evaluation, now, wilson_interval, write_evaluation
 from jaxleas.files import atomic_path
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.picture import PATH
-from jaxleas.guide.registry import KINO, LEAS, Edges, Method
-from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
-from jaxleas.guide.roadmaps.exact import scene_of
-from jaxleas.guide.roadmaps.tuning import make_navigator
-from jaxleas.guide.starts import start_motion
-from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.seeds import EVALUATION_SEED
+from jaxleas.guide import (
+    KINO,
+    LEAS,
+    PATH,
+    Budget,
+    Edges,
+    Method,
+    Navigation,
+    Navigator,
+    Places,
+    load_policy,
+    make_navigator,
+    policy_file,
+    scene_of,
+    start_motion,
+)
+from jaxleas.terrain import EVALUATION_SEED, import_terrain
 
 METHODS: dict[str, Method] = {LEAS.key: LEAS, KINO.key: KINO}
 TITLES = {LEAS.key: "LEAS", KINO.key: KINO.title}
@@ -154,7 +161,7 @@ def draw(path: Path, places: Places, rows: Sequence[Row], pairs: np.ndarray, lim
     """Draw success against connections, the methods' numbers of waypoints, and all pairs."""
     from matplotlib.figure import Figure
 
-    from jaxleas.terrain.draw import draw_height_map
+    from jaxleas.terrain import draw_height_map
 
     figure = Figure(figsize=(14, 6.4), layout="constrained")
     curve, arena = figure.subplots(1, 2, width_ratios=(1.0, 1.05))

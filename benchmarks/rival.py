@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.steering import SteeringEnv, World
 from jaxleas.files import read_json, write_npz
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = ("torch", "gymnasium", "stable_baselines3")

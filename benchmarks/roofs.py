@@ -11,10 +11,9 @@ from jax import Array
 from benchmarks.arithmetic import LOGITS, Rates, gradient_flops, layers
 from benchmarks.spread import all_devices
 from benchmarks.timing import seconds_a_call
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.terrain.atlas import Atlas
-from jaxleas.training.devices import Devices
-from jaxleas.training.run_config import AnyRun
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.terrain import Atlas
+from jaxleas.training import AnyRun, Devices
 
 LARGE = 2048  # side of the large matrices
 PASSES = 8  # passes over memory in one call, so that the start of the call does not count

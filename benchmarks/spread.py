@@ -2,8 +2,7 @@
 
 import jax
 
-from jaxleas.training.cores import most_that_divide
-from jaxleas.training.devices import Devices
+from jaxleas.training import Devices, most_that_divide
 
 
 def all_devices(count: int) -> Devices:

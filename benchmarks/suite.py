@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from benchmarks.context import Context
 from benchmarks.measurements import Measurement, Metric, this_machine
 from benchmarks.workloads import WORKLOADS, Workload
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def choose(only: Sequence[str], quick: bool) -> list[Metric]:

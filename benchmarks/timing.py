@@ -7,7 +7,7 @@ from typing import Any
 
 import jax
 
-from jaxleas.training.stretches import MOST_AHEAD
+from jaxleas.training import MOST_AHEAD
 
 
 def seconds_a_call(call: Callable[[], Any], runs: int, least_seconds: float = 0.5) -> list[float]:

@@ -23,7 +23,7 @@ import numpy as np
 
 from benchmarks.measurements import Figure, Measurement, Metric, this_machine, write_measurements
 from jaxleas.cli_guard import run_guarded
-from jaxleas.viewer.ground import SKY_ABOVE, SKY_BELOW
+from jaxleas.viewer import SKY_ABOVE, SKY_BELOW
 from tests.browser import chromium, wait_until
 
 SECONDS = 10.0

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from jaxleas.runs.swallowed import interrupts_kept
+from jaxleas.runs import interrupts_kept
 
 FAILED = 1
 BAD_INPUT = 2
@@ -56,7 +56,7 @@ def run_guarded(main: Callable[[], None]) -> int:
 def _is_for_people(error: Exception) -> bool:
     if isinstance(error, UsageError):
         return True
-    from jaxleas.types.errors import JaxleasError
+    from jaxleas.types import JaxleasError
 
     not_our_doing = isinstance(error, OSError) and error.errno in _NOT_OUR_DOING
     return not_our_doing or isinstance(error, JaxleasError)

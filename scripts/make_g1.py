@@ -24,8 +24,7 @@ from make_robot import main
 from robot_recipe import Recipe, Shapes
 
 from jaxleas.geometry import Box
-from jaxleas.robots.limb_model import Capsule, LinkBox
-from jaxleas.robots.numeric_inverse import numeric_inverse
+from jaxleas.robots import Capsule, LinkBox, numeric_inverse
 
 SOLE = (0.035, 0.0, -0.035)
 HIP_Y = 0.064452 + 0.052  # from the root's middle to the leg's plane [m]

@@ -42,10 +42,16 @@ from robot_recipe import Recipe
 from scipy.spatial import ConvexHull
 
 from jaxleas.geometry import Polytope
-from jaxleas.robots import Effector, Limb, Robot, write_robot
-from jaxleas.robots.chain import chain_posture
-from jaxleas.robots.limb_model import Body, LimbModel
-from jaxleas.robots.urdf import read_chain
+from jaxleas.robots import (
+    Body,
+    Effector,
+    Limb,
+    LimbModel,
+    Robot,
+    chain_posture,
+    read_chain,
+    write_robot,
+)
 
 DATA = Path(__file__).parents[1] / "jaxleas/robots/data"
 

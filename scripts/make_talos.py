@@ -18,7 +18,7 @@ from make_robot import main
 from robot_recipe import Recipe, Shapes
 
 from jaxleas.geometry import Box
-from jaxleas.robots.limb_model import Capsule, LinkBox
+from jaxleas.robots import Capsule, LinkBox
 
 SOLE = (0.0, 0.0, -0.107)
 MESHES = {2: "hip_y", 3: "knee", 5: "ankle_X"}  # by link: thigh, shank, foot

@@ -18,21 +18,22 @@ import jax.numpy as jnp
 import numpy as np
 
 from benchmarks.measurements import this_machine
-from jaxleas.contacts.sampling import plan_contacts
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.contacts import plan_contacts
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.files import write_json
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy
-from jaxleas.guide.rollout import Trips, paths, roll_out
+from jaxleas.guide import Trips, leas, load_policy, paths, roll_out
 from jaxleas.labels import Judge
-from jaxleas.terrain.atlas import make_atlas
-from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.generator import generate_arena
-from jaxleas.terrain.links import Area
-from jaxleas.terrain.rasterise import rasterise
-from jaxleas.terrain.scenarios import TransitionKind, transition
-from jaxleas.terrain.scene import Scene
-from jaxleas.terrain.seeds import HELD_OUT_SEED
+from jaxleas.terrain import (
+    HELD_OUT_SEED,
+    Area,
+    GeneratorConfig,
+    Scene,
+    TransitionKind,
+    generate_arena,
+    make_atlas,
+    rasterise,
+    transition,
+)
 from jaxleas.types import GuidePath, RootMotion
 
 SEED = HELD_OUT_SEED + 500_000  # far from the terrain that checkpoints are chosen on

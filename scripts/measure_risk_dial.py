@@ -15,21 +15,26 @@ from pathlib import Path
 
 import numpy as np
 
-from jaxleas.contacts.planner_settings import stored_settings
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import ask, walker
-from jaxleas.evaluation.result_file import now
-from jaxleas.evaluation.risk_dial import Guides, as_json, foresee, join, sweep
-from jaxleas.evaluation.starts import draw_starts, make_grounds
-from jaxleas.evaluation.suites import make_suite
-from jaxleas.evaluation.titles import cell_title
+from jaxleas.contacts import stored_settings
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import (
+    Guides,
+    as_json,
+    ask,
+    cell_title,
+    draw_starts,
+    foresee,
+    join,
+    make_grounds,
+    make_suite,
+    now,
+    sweep,
+    walker,
+)
 from jaxleas.files import write_bytes, write_json
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy
-from jaxleas.guide.rb_kino import rb_kino
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.guide import SteeringMethod, leas, load_policy, rb_kino
 from jaxleas.labels import Judge
-from jaxleas.reports.risk_dial import draw_dial
+from jaxleas.reports import draw_dial
 from jaxleas.surrogates import (
     FitSettings,
     Surrogate,
@@ -37,9 +42,9 @@ from jaxleas.surrogates import (
     read_labels,
     read_surrogate,
     require_fit,
+    split_by_terrain,
 )
-from jaxleas.surrogates.fit import split_by_terrain
-from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION
+from jaxleas.terrain import DEFAULT_RESOLUTION
 
 THRESHOLDS = tuple(
     sorted({*np.round(np.arange(0.0, 0.9, 0.1), 2), *np.round(np.arange(0.8, 0.995, 0.01), 2)})

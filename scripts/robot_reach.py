@@ -8,9 +8,7 @@ from robot_recipe import Recipe
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from jaxleas.geometry import Box, Polytope
-from jaxleas.robots.chain import chain_posture
-from jaxleas.robots.limb_model import Body, LimbModel
-from jaxleas.robots.urdf import read_chain
+from jaxleas.robots import Body, LimbModel, chain_posture, read_chain
 
 LEAST_KNEE_BEND = 0.4  # [rad]; nearer to straight the leg cannot carry the root along
 LEAST_KNEE_BEND_OF_COM = 0.2  # [rad]; the same, where the centre of mass is looked for

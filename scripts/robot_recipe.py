@@ -10,9 +10,7 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]  # its wheel adds a .pth
 
 from jaxleas.geometry import Box
-from jaxleas.robots.chain import SerialChain
-from jaxleas.robots.limb_model import Capsule, LinkBox
-from jaxleas.robots.urdf import read_chain
+from jaxleas.robots import Capsule, LinkBox, SerialChain, read_chain
 from jaxleas.types import Pose
 
 SHARE = "cmeel.prefix/share/example-robot-data/robots"

@@ -2,6 +2,8 @@
 
 import ast
 import graphlib
+import importlib
+import importlib.util
 import re
 import subprocess
 import sys
@@ -51,6 +53,81 @@ def imported_rooms(source: str, package: list[str]) -> Iterator[str]:
             parts = name.split(".")
             if parts[0] == "jaxleas" and len(parts) > 1:
                 yield parts[1]
+
+
+# Rooms within a room, each with a face of its own.
+INNER_ROOMS = ("jaxleas.envs.steering",)
+
+
+def past_the_face(source: str, package: list[str]) -> list[str]:
+    """Return what a file imports from inside another room instead of from its face."""
+    found = []
+    own = next((room for room in INNER_ROOMS if ".".join(package).startswith(room)), None)
+    for module in imported_modules(source, package):
+        parts = module.split(".")
+        room = ".".join(parts[:3]) if ".".join(parts[:3]) in INNER_ROOMS else ".".join(parts[:2])
+        at_home = room == own or (own is None and parts[1:2] == package[1:2])
+        is_inside = parts[0] == "jaxleas" and module != room
+        if is_inside and not at_home:
+            found.append(module)
+    return found
+
+
+def imported_modules(source: str, package: list[str]) -> Iterator[str]:
+    """Yield the modules that a file imports or imports names from, however spelt."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            yield ".".join([*base, *([node.module] if node.module else [])])
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_other_rooms_are_imported_by_their_face(path: Path) -> None:
+    package = ["jaxleas", *path.relative_to(ROOT).parts[:-1]]
+    assert past_the_face(path.read_text(encoding="utf-8"), package) == []
+
+
+@pytest.mark.parametrize(
+    ("source", "package", "found"),
+    [
+        ("from jaxleas.terrain import Scene", "jaxleas.guide", []),
+        ("from jaxleas.terrain.scene import Scene", "jaxleas.terrain.scenarios", []),
+        ("from jaxleas.terrain.scene import Scene", "jaxleas.guide", ["jaxleas.terrain.scene"]),
+        ("def f():\n import jaxleas.terrain.scene", "jaxleas.guide", ["jaxleas.terrain.scene"]),
+        ("from ..terrain.scene import Scene", "jaxleas.guide", ["jaxleas.terrain.scene"]),
+        ("from jaxleas.envs.steering import Steering", "jaxleas.guide", []),
+        ("from jaxleas.envs.steering.env import x", "jaxleas.guide", ["jaxleas.envs.steering.env"]),
+        ("from jaxleas.envs.steering.env import x", "jaxleas.envs.steering", []),
+        ("from jaxleas.envs.starts import x", "jaxleas.envs.steering", ["jaxleas.envs.starts"]),
+    ],
+)
+def test_an_import_past_the_face_is_found(source: str, package: str, found: list[str]) -> None:
+    assert past_the_face(source, package.split(".")) == found
+
+
+def face_of(module: str) -> dict[str, str]:
+    """Return the names of a room's face, each with the module that defines it."""
+    stub = ROOT.parent / Path(*module.split(".")) / "__init__.pyi"
+    tree = ast.parse(stub.read_text(encoding="utf-8")) if stub.exists() else ast.Module([], [])
+    return {
+        alias.name: f"{module}.{node.module}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+
+@pytest.mark.parametrize(
+    "room", [*sorted({room_of(path) for path in FILES if path.parent != ROOT}), "envs.steering"]
+)
+def test_what_a_face_names_exists_and_hides_no_file(room: str) -> None:
+    module = importlib.import_module(f"jaxleas.{room}")
+    for name, defined in face_of(module.__name__).items():
+        assert getattr(module, name) is getattr(importlib.import_module(defined), name)
+        file = f"{module.__name__}.{name}"
+        assert defined == file or importlib.util.find_spec(file) is None, f"{file} is a file, too"
 
 
 def violations(room: str, source: str, package: list[str]) -> list[str]:
@@ -123,7 +200,9 @@ def imported_at_once(path: Path) -> Iterator[str]:
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            face = face_of(node.module)
+            names = [alias.name for alias in node.names]
+            yield from (face.get(name, f"{node.module}.{name}") for name in names)
 
 
 @pytest.mark.parametrize(

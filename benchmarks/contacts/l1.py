@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from benchmarks.contacts.flat_worlds import content, rectangle
-from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts import ContactProblem
 
 START = {"S1": rectangle(-0.3, 0.0, -0.2, 0.2)}
 SAMPLES = (  # of figure 5.10: one surface, two, three in a row, four around

@@ -13,9 +13,7 @@ from benchmarks.contacts.l1 import START, cost_map, scenario_a, scenario_a2, sce
 from benchmarks.contacts.samples import KEPT
 from benchmarks.contacts.samples import SAMPLES as COUNTS
 from benchmarks.measurements import Measurement
-from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.problem_file import parse_problem
-from jaxleas.contacts.programs.attempt import attempt
+from jaxleas.contacts import ContactProblem, attempt, parse_problem
 from jaxleas.files import atomic_path
 
 if TYPE_CHECKING:

@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.contacts.rows import Row, milliseconds
-from jaxleas.contacts import certify, plan_mip, plan_sl1m
-from jaxleas.contacts.problem_file import parse_problem
-from jaxleas.contacts.programs.attempt import attempt
+from jaxleas.contacts import attempt, certify, parse_problem, plan_mip, plan_sl1m
 
 MODELS = ("two_com", "feet")
 

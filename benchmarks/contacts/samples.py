@@ -10,9 +10,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.contacts.rows import Row
-from jaxleas.contacts.sampling import SamplingSettings, plan_contacts
-from jaxleas.terrain import transition
-from jaxleas.terrain.scene import Scene
+from jaxleas.contacts import SamplingSettings, plan_contacts
+from jaxleas.terrain import Scene, transition
 from jaxleas.types import GuidePath
 
 SAMPLES = (1_000, 2_500, 5_000, 10_000, 25_000, 50_000)

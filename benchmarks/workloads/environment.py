@@ -14,14 +14,18 @@ from benchmarks.measurements import Figure, Metric
 from benchmarks.spread import all_devices
 from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
-from jaxleas.envs.starts import draw_picks, pool_of, restart_where
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import ICRA81, THESIS144
-from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import begin, draw_starts
-from jaxleas.envs.steering.task import Steering
-from jaxleas.envs.steering.world import World
-from jaxleas.training.worlds import training_world
+from jaxleas.envs import draw_picks, pool_of, restart_where
+from jaxleas.envs.steering import (
+    ICRA81,
+    THESIS144,
+    RewardParams,
+    Steering,
+    SteeringEnv,
+    World,
+    begin,
+    draw_starts,
+)
+from jaxleas.training import training_world
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
 QUICK_SIZES = (256, 4096)

@@ -10,13 +10,10 @@ from benchmarks.context import Context
 from benchmarks.measurements import Figure, Metric
 from benchmarks.timing import seconds_a_call
 from benchmarks.workloads.workload import Workload
-from jaxleas.envs.steering.layout import ACTION_SIZE
-from jaxleas.export import build_onnx
-from jaxleas.export.write import described
-from jaxleas.guide.onnx_policy import onnx_policy_from_bytes
-from jaxleas.training.networks import make_networks
-from jaxleas.training.normaliser import initial_normaliser
-from jaxleas.training.policy import policy_of
+from jaxleas.envs.steering import ACTION_SIZE
+from jaxleas.export import build_onnx, described
+from jaxleas.guide import onnx_policy_from_bytes
+from jaxleas.training import initial_normaliser, make_networks, policy_of
 
 BATCHES = (1, 1024)
 

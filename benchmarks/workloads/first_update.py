@@ -11,11 +11,14 @@ begin = time.perf_counter()
 
 import jax  # noqa: E402
 
-from jaxleas.training.cores import share_cores  # noqa: E402
-from jaxleas.training.devices import choose_devices  # noqa: E402
-from jaxleas.training.run_config import load_run_config, make_task  # noqa: E402
-from jaxleas.training.trainer import Trainer  # noqa: E402
-from jaxleas.xla.compilation import keep_compiled_programs  # noqa: E402
+from jaxleas.training import (  # noqa: E402
+    Trainer,
+    choose_devices,
+    load_run_config,
+    make_task,
+    share_cores,
+)
+from jaxleas.xla import keep_compiled_programs  # noqa: E402
 
 
 def main() -> None:

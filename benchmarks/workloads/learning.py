@@ -9,7 +9,7 @@ from benchmarks.context import Context
 from benchmarks.measurements import Figure, Metric
 from benchmarks.workloads.processes import require_success, start
 from benchmarks.workloads.workload import Workload
-from jaxleas.runs.metrics import read_metrics
+from jaxleas.runs import read_metrics
 
 LEVELS = {"learn_seconds_to_95_percent": 0.95, "learn_seconds_to_99_percent": 0.99}
 BEST, SECONDS_TO_BEST = "learn_best_success", "learn_seconds_to_best"

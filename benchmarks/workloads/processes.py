@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.context import ROOT
-from jaxleas.types.errors import JaxleasError
+from jaxleas.types import JaxleasError
 
 # A process inherits the peak of the one that forked it, so a small process is in between.
 _WEIGH = """

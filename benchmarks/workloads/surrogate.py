@@ -6,10 +6,9 @@ from benchmarks.context import Context
 from benchmarks.measurements import Figure, Metric
 from benchmarks.workloads.environment import ARENA_ROBOTS, rates
 from benchmarks.workloads.workload import Workload
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.surrogates import FitSettings, Identity, Surrogate, SurrogateForesight
-from jaxleas.surrogates.network import initial_weights
+from jaxleas.contacts import settings_from
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.surrogates import FitSettings, Identity, Surrogate, SurrogateForesight, initial_weights
 
 PLANNER = "sampling"
 

@@ -12,11 +12,8 @@ from benchmarks.context import Context, changed
 from benchmarks.measurements import Figure, Metric
 from benchmarks.timing import not_far_ahead, seconds_a_call
 from benchmarks.workloads.workload import Workload
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import ICRA81
-from jaxleas.training.devices import choose_devices
-from jaxleas.training.run_config import AnyRun, make_task
-from jaxleas.training.trainer import Trainer
+from jaxleas.envs.steering import ICRA81, SteeringEnv
+from jaxleas.training import AnyRun, Trainer, choose_devices, make_task
 
 SIZES = (256, 1024, 4096, 16_384, 65_536)
 ARENAS = (16, 256)

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from jaxleas.conditions.condition import Condition, all_of, stated_points
 from jaxleas.conditions.foresight import Foresight
-from jaxleas.configuration.registry import Registry
+from jaxleas.configuration import Registry
 from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 

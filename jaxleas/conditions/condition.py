@@ -10,8 +10,7 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.conditions.points import Points, columns_of, union_of_points
-from jaxleas.types import InputError, RootMotion
-from jaxleas.types.ground import NO_GROUND_IN_ROOT
+from jaxleas.types import NO_GROUND_IN_ROOT, InputError, RootMotion
 
 VOID_IN_ROOT = NO_GROUND_IN_ROOT
 """Height in the root frame [m] at or below which there is no ground."""

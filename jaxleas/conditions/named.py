@@ -7,8 +7,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from jaxleas.conditions.catalogue import CONDITIONS, SURROGATE
-from jaxleas.configuration.registry import is_own
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict, is_own
 from jaxleas.files import digest_of
 
 STANDARD = ("strict_reachability", "collision")

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from jaxleas.configuration.strict import Strict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def present_name(model: type[Strict], name: str) -> str:

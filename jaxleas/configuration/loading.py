@@ -18,7 +18,7 @@ from jaxleas.configuration.fields import fields_of, help_text, nearest
 from jaxleas.configuration.former import present_name, with_present_names
 from jaxleas.configuration.strict import Strict
 from jaxleas.configuration.yaml_text import dump_yaml, parse_yaml, read_mapping
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Model = TypeVar("Model", bound=Strict)
 # Sources of values, weakest first: (name for messages, stated values).

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Item = TypeVar("Item")
 

@@ -9,7 +9,7 @@ from jaxleas.configuration.fields import Field, fields_of
 from jaxleas.configuration.former import present_name
 from jaxleas.configuration.loading import hint, merge, validate
 from jaxleas.configuration.strict import Strict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Model = TypeVar("Model", bound=Strict)
 

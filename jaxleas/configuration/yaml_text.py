@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from jaxleas.files import is_file, read_bytes
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 class _Loader(yaml.SafeLoader):

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _Foot = tuple[str, np.ndarray, float]  # name, position [m], yaw [rad]
 TOLERANCE = 1e-6

@@ -9,8 +9,8 @@ from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.robots import DEFAULT_ROBOT, load_robot
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.terrain import load_scene
+from jaxleas.types import InputError, JaxleasError
 
 
 class NotCertifiedError(JaxleasError):

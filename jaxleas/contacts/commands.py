@@ -16,8 +16,8 @@ from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
 from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import load_scene
+from jaxleas.types import InputError
 
 
 def plan(

@@ -13,12 +13,16 @@ from jaxleas.contacts.problem import ContactProblem, FootPose, Model, Step
 from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.geometry import Polytope, clip_polygon, pack_polygons, polygons_meet_polytope
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.geometry import (
+    Box,
+    Polytope,
+    clip_polygon,
+    pack_polygons,
+    polygons_meet_polytope,
+    wrap_angle_on_host,
+)
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.polygons import polygon_area_vector
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene, polygon_area_vector
 from jaxleas.types import GuidePath, InputError
 
 Candidates = Literal["window", "rom"]

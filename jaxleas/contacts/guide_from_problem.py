@@ -6,8 +6,7 @@ import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.robots import load_robot
-from jaxleas.terrain.polygons import is_vertical
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene, is_vertical
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2

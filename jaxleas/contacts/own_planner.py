@@ -8,10 +8,16 @@ import numpy as np
 
 from jaxleas.contacts.planner import AskedGuides, Planner, mean_step
 from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.errors import InputError
-from jaxleas.types.verdict import CAUSES, UNDECIDED_CAUSES, Cause, PathProgress
+from jaxleas.terrain import Scene
+from jaxleas.types import (
+    CAUSES,
+    UNDECIDED_CAUSES,
+    Cause,
+    GuidePath,
+    InputError,
+    PathProgress,
+    Verdict,
+)
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,8 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.files import atomic_path
-from jaxleas.robots.effector import LIMB_OF_FOOT
-from jaxleas.types import GuidePath
-from jaxleas.types.errors import InputError
+from jaxleas.robots import LIMB_OF_FOOT
+from jaxleas.types import GuidePath, InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
 from jaxleas.files import read_json, require_version, write_json
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Status = Literal["feasible", "infeasible", "time_limit", "not_found"]
 VERSION = 1

@@ -17,7 +17,7 @@ from jaxleas.contacts.sampling.case import make_case
 from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
 MOST_BEYOND = 1.0

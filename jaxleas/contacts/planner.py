@@ -5,12 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import Scene
+from jaxleas.types import GuidePath, InputError, Verdict
 
 Measure = Literal["robustness", "undecided", "combinations"]
 

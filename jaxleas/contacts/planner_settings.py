@@ -5,11 +5,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.contacts.planner import Planner
 from jaxleas.contacts.registry import PLANNERS, find_planner
 from jaxleas.contacts.settings import PlannerSettings
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def require_settings(

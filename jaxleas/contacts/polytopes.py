@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 
 from jaxleas.files import refuse_misspelt_keys
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Polytope
 from jaxleas.robots import load_robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.problem import FootPose
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 How = Literal["start", "kept", "stepped", "repositioned"]
 """The first; contacts kept while the root moved on; one made anew as the root moved on, or not."""

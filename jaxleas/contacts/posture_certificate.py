@@ -15,10 +15,9 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_balance import two_point_margin
 from jaxleas.contacts.posture_model import Stood, stand
-from jaxleas.dynamics.contact_points import ContactPoints
-from jaxleas.dynamics.exact_cone import exact_robustness
+from jaxleas.dynamics import ContactPoints, exact_robustness
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
 _SAME_FORCE = 1e-6

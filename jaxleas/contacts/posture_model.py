@@ -9,9 +9,8 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from jaxleas.contacts.posture import Posture
-from jaxleas.robots import Robot
-from jaxleas.robots.limb_model import Body, LimbModel
-from jaxleas.terrain.scene import Scene
+from jaxleas.robots import Body, LimbModel, Robot
+from jaxleas.terrain import Scene
 from jaxleas.types import InputError
 
 

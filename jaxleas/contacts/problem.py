@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.polytopes import StepPolytopes
 from jaxleas.contacts.surfaces import ContactSurface
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Model = Literal["two_com", "feet"]
 TWO = 2

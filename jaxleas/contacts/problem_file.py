@@ -11,7 +11,7 @@ from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
 from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
 from jaxleas.robots import load_robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 VERSION = 1
 NEEDED = ("robot", "model", "surfaces", "initial", "phases")

@@ -5,10 +5,10 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
-from jaxleas.configuration.registry import Registry, is_own
+from jaxleas.configuration import Registry, is_own
 from jaxleas.contacts.own_planner import JudgedByOwn, OwnPlanner
 from jaxleas.contacts.planner import Measure, Planner
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def _require_planner(name: str, item: Any) -> None:

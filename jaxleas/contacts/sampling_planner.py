@@ -7,8 +7,7 @@ from jaxleas.contacts.planner import AskedGuide, AskedGuides, Grain, Planner, me
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
 from jaxleas.robots import load_robot
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.verdict import Cause, PathProgress, PlannerMeasures
+from jaxleas.types import Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
 
 CAUSE_OF_ENDING: dict[str, Cause] = {
     "trunk": "collision",

@@ -4,7 +4,7 @@ from typing import Self
 
 from pydantic import PositiveInt
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 
 
 class PlannerSettings(Strict):

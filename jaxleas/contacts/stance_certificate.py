@@ -13,10 +13,9 @@ from scipy.optimize import linprog
 from scipy.sparse import csr_array
 
 from jaxleas.contacts.certificate import TOLERANCE
-from jaxleas.dynamics import ContactPoints, exact_robustness
-from jaxleas.dynamics.equilibrium import GRAVITY
+from jaxleas.dynamics import GRAVITY, ContactPoints, exact_robustness
 from jaxleas.robots import Robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import Contact, InputError, RootPose, Stance
 
 _SIDES = 256

@@ -7,13 +7,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull
 
-from jaxleas.terrain.polygons import (
-    MIN_AREA,
-    polygon_area_vector,
-    require_few,
-    require_planar_and_convex,
-)
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import MIN_AREA, polygon_area_vector, require_few, require_planar_and_convex
+from jaxleas.types import InputError
 
 _STRICTLY_CONVEX = 1e-9  # a corner that turns by less than this is not a corner [m]
 

@@ -8,8 +8,8 @@ from jaxleas.distillation.folder import RoundFolder, read_done
 from jaxleas.distillation.practice import practice_config, read_run
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.training.policy import read_policy
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.training import read_policy
 
 
 class AgainstPlanner:

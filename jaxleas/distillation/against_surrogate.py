@@ -19,7 +19,7 @@ from jaxleas.surrogates import (
     require_fit,
     write_surrogate,
 )
-from jaxleas.training.policy import Policy, read_policy
+from jaxleas.training import Policy, read_policy
 
 
 class AgainstSurrogate:

@@ -10,10 +10,8 @@ from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.distillation.walking import before_first, walk_from_starts
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.world import World
-from jaxleas.training.policy import Policy
+from jaxleas.envs.steering import RewardParams, SteeringEnv, World
+from jaxleas.training import Policy
 from jaxleas.types import GuidePath, RootMotion, cut_walks
 
 HOLD = 10  # steps for which a disturbance lasts: one of a step's length would average out

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def distill(
@@ -26,8 +26,8 @@ def distill(
     """
     import os
 
-    from jaxleas.configuration.loading import load_config
-    from jaxleas.contacts.registry import permit
+    from jaxleas.configuration import load_config
+    from jaxleas.contacts import permit
     from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
@@ -35,9 +35,8 @@ def distill(
     from jaxleas.distillation.table import table_of
     from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
-    from jaxleas.training.cores import share_cores
-    from jaxleas.training.devices import choose_devices
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.training import choose_devices, share_cores
+    from jaxleas.xla import keep_compiled_programs
 
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
@@ -78,7 +77,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     from jaxleas.distillation.report_data import is_distilled
 
     if not is_distilled(Path(run)):
-        from jaxleas.reports.commands import report as report_training
+        from jaxleas.reports import report as report_training
 
         return report_training(run, out)
     from jaxleas.distillation.report import write_distilled_report

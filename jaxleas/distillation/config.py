@@ -5,13 +5,12 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, JsonValue, field_validator, model_validator
 
-from jaxleas.configuration.bounds import Count, NonNegative, Positive, Seed, Whole
-from jaxleas.configuration.strict import Strict
-from jaxleas.contacts.registry import DEFAULT_JUDGE, require_planner_name
-from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
-from jaxleas.evaluation.recipes import RECIPES
-from jaxleas.surrogates.settings import FitSettings
-from jaxleas.training.config import RunConfig
+from jaxleas.configuration import Count, NonNegative, Positive, Seed, Strict, Whole
+from jaxleas.contacts import DEFAULT_JUDGE, require_planner_name
+from jaxleas.envs.steering import SteeringConfig, TerrainConfig
+from jaxleas.evaluation import RECIPES
+from jaxleas.surrogates import FitSettings
+from jaxleas.training import RunConfig
 
 SteeringRun = RunConfig[SteeringConfig, TerrainConfig]
 Observation = Literal["thesis144", "thesis145", "icra81"]

@@ -9,9 +9,9 @@ from jax import Array
 from jaxtyping import Float, Int
 
 from jaxleas.distillation.episodes import Episodes
-from jaxleas.envs.heads.normal import NormalDistribution
-from jaxleas.labels import Verdict
-from jaxleas.training.loss import Experience
+from jaxleas.envs import NormalDistribution
+from jaxleas.training import Experience
+from jaxleas.types import Verdict
 
 _KEPT = ("observation", "raw_action", "location", "deviation", "reward")
 Steps = dict[str, np.ndarray]

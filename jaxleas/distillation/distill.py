@@ -26,9 +26,9 @@ from jaxleas.distillation.rounds import (
     known_rounds,
 )
 from jaxleas.distillation.workplace import Workplace
-from jaxleas.evaluation.titles import refined_name
-from jaxleas.guide.registry import LEAS
-from jaxleas.training.policy import read_policy
+from jaxleas.evaluation import refined_name
+from jaxleas.guide import LEAS
+from jaxleas.training import read_policy
 
 _MODES = {"surrogate": AgainstSurrogate, "faithful": AgainstPlanner}
 

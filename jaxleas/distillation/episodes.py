@@ -13,13 +13,8 @@ from jaxtyping import Bool, Float, Int, Key
 from jaxleas.distillation.collect import Walks
 from jaxleas.distillation.config import SteeringRun
 from jaxleas.distillation.walking import walk_from_starts
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.world import World
-from jaxleas.training.networks import ActorCritic
-from jaxleas.training.normaliser import normalise
-from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import TrainState
+from jaxleas.envs.steering import RewardParams, SteeringEnv, World
+from jaxleas.training import ActorCritic, PpoParams, TrainState, normalise
 
 Walk = Callable[[World, TrainState, Key[Array, ""]], Any]
 

@@ -20,15 +20,19 @@ from jaxleas.distillation.config import FaithfulConfig, SteeringRun
 from jaxleas.distillation.cutting import Stream, cut, to_experience
 from jaxleas.distillation.episodes import Episodes, make_walk, to_host
 from jaxleas.distillation.faithful_metrics import Tally, batch_metrics
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
-from jaxleas.labels import Judge, Verdict
-from jaxleas.terrain.scene import Scene
-from jaxleas.training.networks import make_networks
-from jaxleas.training.normaliser import initial_normaliser
-from jaxleas.training.ppo import make_update
-from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import Learned, TrainState, make_optimiser
+from jaxleas.envs.steering import SteeringEnv, World
+from jaxleas.labels import Judge
+from jaxleas.terrain import Scene
+from jaxleas.training import (
+    Learned,
+    PpoParams,
+    TrainState,
+    initial_normaliser,
+    make_networks,
+    make_optimiser,
+    make_update,
+)
+from jaxleas.types import Verdict
 
 Wave = tuple[Episodes, list[Verdict]]
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from jaxleas.distillation.cutting import kept_steps
 from jaxleas.distillation.episodes import Episodes
-from jaxleas.labels import Verdict
+from jaxleas.types import Verdict
 
 
 @dataclass

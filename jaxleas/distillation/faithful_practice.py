@@ -7,31 +7,29 @@ from dataclasses import dataclass
 
 import jax
 
-from jaxleas.configuration.loading import to_yaml
+from jaxleas.configuration import to_yaml
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.practice import conclude
-from jaxleas.envs.steering.task import Steering
-from jaxleas.runs.checkpoints import Checkpoints
-from jaxleas.runs.folder import RunFolder
-from jaxleas.runs.interruption import Interruption
-from jaxleas.runs.metrics import MetricsLog
-from jaxleas.runs.progress import Progress
-from jaxleas.training.examination import make_examination
-from jaxleas.training.loop import POLICY_FILE
-from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.stretches import (
+from jaxleas.envs.steering import Steering
+from jaxleas.runs import Checkpoints, Interruption, MetricsLog, Progress, RunFolder
+from jaxleas.training import (
+    POLICY_FILE,
     InterruptedRunError,
+    Learned,
     Metrics,
     NonFiniteError,
     Schedule,
     Stretch,
+    TrainState,
+    held_out_world,
+    make_examination,
     non_finite,
     numbers,
+    policy_of,
     stretches,
+    write_policy,
 )
-from jaxleas.training.train_state import Learned, TrainState
-from jaxleas.training.worlds import held_out_world
 
 
 def practise_faithfully(folder: RoundFolder, training: Faithful, learned: Learned) -> None:

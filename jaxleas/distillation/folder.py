@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.files import read_json, require_version
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 CONFIG = "config.yaml"
 VERSION = 1  # of the whole folder

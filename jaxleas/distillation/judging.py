@@ -6,13 +6,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from jaxleas.distillation.config import JudgeConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import Bookkeeping, Planner, judge_exact, walker
-from jaxleas.evaluation.result_file import CellResult
-from jaxleas.evaluation.suites import make_suite
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import Bookkeeping, CellResult, Planner, judge_exact, make_suite, walker
 from jaxleas.files import read_json, require_version, typed, write_json
-from jaxleas.guide.leas import leas
-from jaxleas.training.policy import Policy
+from jaxleas.guide import leas
+from jaxleas.training import Policy
 from jaxleas.types import InputError
 
 VERSION = 1

@@ -11,14 +11,14 @@ from jaxtyping import Float, Int
 from jaxleas.distillation.collect import Walks, WalksWanted, collect
 from jaxleas.distillation.config import CollectConfig
 from jaxleas.distillation.folder import RoundFolder
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.steering import SteeringEnv, World
 from jaxleas.files import write_json
-from jaxleas.guide.files import Reason, write_guide_paths
-from jaxleas.labels import Oracle, Workers, label_shards, plan_shards
+from jaxleas.guide import Reason, write_guide_paths
+from jaxleas.labels import Oracle, label_shards, plan_shards
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
-from jaxleas.terrain.scene import Scene, write_scene
-from jaxleas.training.policy import Policy
+from jaxleas.terrain import Scene, write_scene
+from jaxleas.training import Policy
+from jaxleas.workers import Workers
 
 
 @dataclass(frozen=True)

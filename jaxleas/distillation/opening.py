@@ -4,18 +4,15 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.loading import load_config, to_yaml
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import find_planner
+from jaxleas.configuration import load_config, to_yaml
+from jaxleas.contacts import find_planner, settings_from
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
-from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import write_json, write_text
-from jaxleas.runs.folder import RunFolder
-from jaxleas.training.devices import Devices
-from jaxleas.training.loop import train
-from jaxleas.training.run_config import load_run_config
-from jaxleas.types.errors import InputError
+from jaxleas.runs import RunFolder
+from jaxleas.training import Devices, load_run_config, train
+from jaxleas.types import InputError
 
 
 def open_folder(

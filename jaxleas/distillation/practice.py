@@ -6,23 +6,24 @@ from pathlib import Path
 
 import jax
 
-from jaxleas.conditions import Foresight
-from jaxleas.conditions.named import harmless
-from jaxleas.configuration.loading import to_yaml
+from jaxleas.conditions import Foresight, harmless
+from jaxleas.configuration import to_yaml
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.opening import load_steering_run
-from jaxleas.envs.steering.task import Steering
+from jaxleas.envs.steering import Steering
 from jaxleas.files import write_json
-from jaxleas.runs.checkpoints import Checkpoints
-from jaxleas.runs.folder import RunFolder
-from jaxleas.training.devices import Devices
-from jaxleas.training.loop import train_with
-from jaxleas.training.networks import make_networks
-from jaxleas.training.normaliser import initial_normaliser
-from jaxleas.training.policy import policy_of, write_policy
-from jaxleas.training.train_state import Learned
-from jaxleas.training.trainer import Trainer
+from jaxleas.runs import Checkpoints, RunFolder
+from jaxleas.training import (
+    Devices,
+    Learned,
+    Trainer,
+    initial_normaliser,
+    make_networks,
+    policy_of,
+    train_with,
+    write_policy,
+)
 
 _LOG = logging.getLogger("jaxleas")
 

@@ -3,17 +3,17 @@
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.loading import load_config
-from jaxleas.contacts.registry import title_of
+from jaxleas.configuration import load_config
+from jaxleas.contacts import title_of
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.report_data import RunData, read_run_data
 from jaxleas.distillation.report_pictures import draw_calibration, draw_learning, draw_rounds
-from jaxleas.evaluation.titles import cell_title
+from jaxleas.evaluation import cell_title
 from jaxleas.files import write_text
 from jaxleas.reports import draw_figures, inline, page_template, percent, thesis, thesis_tables
-from jaxleas.reports.side_by_side import headings as side_headings
-from jaxleas.reports.side_by_side import rows as side_rows
+from jaxleas.reports import headings as side_headings
+from jaxleas.reports import rows as side_rows
 
 TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # the parts of a surrogate's report

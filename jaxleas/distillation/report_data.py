@@ -8,15 +8,12 @@ from typing import Any
 from jaxleas.distillation.folder import DistillationFolder, read_begun_with
 from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds
-from jaxleas.evaluation.figure_file import Figures, read_figures
-from jaxleas.evaluation.result_file import Evaluation, read_evaluation
-from jaxleas.evaluation.titles import refined_name
+from jaxleas.evaluation import Evaluation, Figures, read_evaluation, read_figures, refined_name
 from jaxleas.files import is_file
-from jaxleas.labels.shards import read_verdicts
-from jaxleas.reports.published import printed_planners
-from jaxleas.runs.metrics import read_metrics
-from jaxleas.types import CAUSES, Cause, Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.labels import read_verdicts
+from jaxleas.reports import printed_planners
+from jaxleas.runs import read_metrics
+from jaxleas.types import CAUSES, Cause, InputError, Verdict
 
 FIGURES = "figures.json"
 MOST_CAUSES = 3

@@ -10,8 +10,7 @@ from jaxleas.distillation.folder import DistillationFolder, RoundFolder
 from jaxleas.distillation.round_result import RoundResult, best_of
 from jaxleas.distillation.rounds_file import read_rounds, write_rounds
 from jaxleas.files import atomic_path
-from jaxleas.training.policy import Policy
-from jaxleas.training.train_state import Learned
+from jaxleas.training import Learned, Policy
 
 
 class Say(Protocol):

@@ -7,10 +7,10 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Whole
+from jaxleas.configuration import Count, Fraction, NonNegative, Whole
 from jaxleas.distillation.round_result import RoundResult
 from jaxleas.files import read_json, require_version, typed, write_json
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 VERSION = 1
 

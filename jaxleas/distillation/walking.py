@@ -9,10 +9,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.reward import RewardParams
-from jaxleas.envs.steering.starts import begin
-from jaxleas.envs.steering.world import World
+from jaxleas.envs.steering import RewardParams, SteeringEnv, World, begin
 from jaxleas.types import RootMotion
 
 Act = Callable[[Array, Array], tuple[Array, Any]]

@@ -7,11 +7,8 @@ import jax
 import jax.numpy as jnp
 
 from jaxleas.distillation.config import SteeringRun
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.training.normaliser import initial_normaliser
-from jaxleas.training.policy import Policy
-from jaxleas.training.train_state import Learned
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.training import Learned, Policy, initial_normaliser
 from jaxleas.types import InputError
 
 _FIRST_LAYER = "hidden_0"

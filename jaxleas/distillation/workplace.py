@@ -3,22 +3,18 @@
 from collections.abc import Collection
 from functools import cached_property
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import find_planner
+from jaxleas.contacts import PlannerSettings, find_planner, settings_from
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import DistillationFolder
 from jaxleas.distillation.labelling import Ground
 from jaxleas.distillation.practice import read_run
 from jaxleas.distillation.widening import widen, widen_policy
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.task import Steering
-from jaxleas.labels import Judge, PlannerSettings, ProcessWorkers
-from jaxleas.labels.judging import PLANNER_MODULES
+from jaxleas.envs.steering import Steering, SteeringEnv
+from jaxleas.labels import PLANNER_MODULES, Judge
 from jaxleas.surrogates import Identity
-from jaxleas.terrain.generator import generate_arena
-from jaxleas.training.devices import Devices, one_device
-from jaxleas.training.policy import Policy, read_policy
-from jaxleas.training.worlds import training_world
+from jaxleas.terrain import generate_arena
+from jaxleas.training import Devices, Policy, one_device, read_policy, training_world
+from jaxleas.workers import ProcessWorkers
 
 POLICY_FILE = "policy.npz"
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _UNIT = 1e-6
 LEAST_GENERATORS = 3

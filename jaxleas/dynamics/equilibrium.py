@@ -8,7 +8,7 @@ from jaxleas.dynamics.equilibrium_lp import robustness_by_linear_program
 from jaxleas.dynamics.friction import friction_generators, margin_of_generator
 from jaxleas.dynamics.small_lp import maximise
 from jaxleas.dynamics.vectors import cross
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 GRAVITY = 9.81  # standard gravity [m/s^2]
 _CERTIFIED = 1e-9  # tolerance of a basis's primal and dual feasibility, relative to its size

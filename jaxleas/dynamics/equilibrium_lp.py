@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import linprog
 
-from jaxleas.types.errors import JaxleasError
+from jaxleas.types import JaxleasError
 
 
 def robustness_by_linear_program(

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from scipy.optimize import linprog
 
 from jaxleas.dynamics.contact_points import ContactPoints
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.types import InputError, JaxleasError
 
 _GRAVITY = 9.81  # [m/s^2]
 _AT_FIRST = 8  # generators of each point

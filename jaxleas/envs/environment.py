@@ -17,10 +17,9 @@ from jax import Array
 from jaxtyping import Bool, Float, Int
 from pydantic import Field
 
-from jaxleas.configuration.bounds import Count
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Count, Strict
 from jaxleas.envs.signature import Signature
-from jaxleas.terrain.seeds import MAX_TRAINING_SEED
+from jaxleas.terrain import MAX_TRAINING_SEED
 
 FORMAT = 1
 """Version of the description that an exported policy carries."""

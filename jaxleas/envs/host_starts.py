@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from jaxleas.envs.environment import Starts
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True)

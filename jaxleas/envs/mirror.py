@@ -8,7 +8,7 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.xla.gather import take_inside
+from jaxleas.xla import take_inside
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from jaxleas.configuration.registry import Registry
+from jaxleas.configuration import Registry
 from jaxleas.envs.environment import Task
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 DEFAULT_TASK = "steering"
 """Task of configurations that name no task: they were written when there was only one."""

@@ -18,7 +18,7 @@ from jaxtyping import Float, Key
 
 from jaxleas.envs.heads.head import Head
 from jaxleas.envs.mirror import Mirror
-from jaxleas.xla.split import split
+from jaxleas.xla import split
 
 Numbers = float | tuple[float, ...]
 

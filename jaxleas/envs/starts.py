@@ -9,7 +9,7 @@ from jax import Array
 from jaxtyping import Bool, Int, Key
 
 from jaxleas.envs.environment import Starts, select
-from jaxleas.xla.gather import take_inside
+from jaxleas.xla import take_inside
 
 
 @struct.dataclass

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from jaxleas.contacts import PlannerSettings
 from jaxleas.evaluation.contenders import Contenders
 from jaxleas.evaluation.exact import Bookkeeping, ResultKey, judge_exact, result_key
 from jaxleas.evaluation.examination import Candidate, kept_evaluation
 from jaxleas.evaluation.forecast import Forecast
 from jaxleas.evaluation.result_file import CellResult, Evaluation, now, write_evaluation
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.labels import Judge, PlannerSettings
-from jaxleas.labels.judging import planner_workers
+from jaxleas.labels import Judge, planner_workers
 
 Results = dict[ResultKey, CellResult]
 _SAME = ("suite", "seed", "robot", "foresight")

@@ -7,16 +7,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from jaxleas.configuration.registry import is_own
+from jaxleas.configuration import is_own
 from jaxleas.evaluation.exact import Walker, walker
 from jaxleas.evaluation.examination import Candidate
 from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.roadmap_walker import roadmap_walker
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.registry import METHODS, compared, find_method
-from jaxleas.guide.roadmaps.ompl import import_ompl
-from jaxleas.types.errors import InputError
+from jaxleas.guide import (
+    METHODS,
+    compared,
+    find_method,
+    import_ompl,
+    leas,
+    load_policy,
+    policy_file,
+)
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,17 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.contacts import PlannerSettings
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.judge import CellRollOut, roll_out_cell, rounded, summarise
 from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.leas import leas
-from jaxleas.guide.loading import load_policy
-from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.labels import Judge, PlannerSettings, Verdict
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath
+from jaxleas.guide import SteeringMethod, leas, load_policy
+from jaxleas.labels import Judge
+from jaxleas.terrain import Scene
+from jaxleas.types import GuidePath, Verdict
 
 Walker = Callable[[Grounds, Starts, int], CellRollOut]
 """Walks the starts of a cell for at most the given number of steps, with or without a roadmap."""

@@ -6,17 +6,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
-from jaxleas.guide.loading import load_policy, policy_file
-from jaxleas.guide.registry import BASELINES, LEAS
-from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.types.errors import InputError
+from jaxleas.guide import BASELINES, LEAS, SteeringMethod, load_policy, policy_file
+from jaxleas.types import InputError
 
 POLICY = LEAS.key
 

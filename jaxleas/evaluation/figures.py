@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.contacts import PlannerSettings
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Judged, Walker, ask
 from jaxleas.evaluation.figure_file import (
     Course,
@@ -20,8 +21,9 @@ from jaxleas.evaluation.judge import CellRollOut, rounded
 from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.labels import Judge, PlannerSettings, Workers
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.labels import Judge
+from jaxleas.terrain import HeightMap
+from jaxleas.workers import Workers
 
 BASIC = ("stairs_up", "stairs_down", "rubble")
 COURSE = "long_course"

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import DEFAULT_PLANNER, PlannerName, find_planner
+from jaxleas.contacts import DEFAULT_PLANNER, PlannerName, find_planner, settings_from
 from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
 from jaxleas.evaluation.examination import POLICY, load_candidate
 from jaxleas.evaluation.figure_file import FigureFile, Figures, read_figures, write_figures
@@ -14,10 +13,9 @@ from jaxleas.evaluation.figures import KEEP_EVERY, Questions, figure_cells, meas
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
-from jaxleas.guide.registry import KINO, ResultName
-from jaxleas.labels.judging import planner_workers
-from jaxleas.labels.settings import settings_of
-from jaxleas.types.errors import InputError
+from jaxleas.guide import KINO, ResultName
+from jaxleas.labels import planner_workers, settings_of
+from jaxleas.types import InputError
 
 METHODS = (KINO.key, POLICY)
 

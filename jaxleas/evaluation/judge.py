@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.result_file import AreaResult, CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide.rollout import Trips, roll_out
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.guide import SteeringMethod, Trips, roll_out
 from jaxleas.types import GuidePath
 
 AREA_NAMES = ("near", "far")

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.surrogates import Surrogate, SurrogateForesight, read_surrogate, require_fit
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.configuration.bounds import Count, Fraction, NonNegative
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Count, Fraction, NonNegative, Strict
 from jaxleas.files import read_typed, write_json
 
 VERSION = 1

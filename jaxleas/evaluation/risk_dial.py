@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Judged
 from jaxleas.evaluation.judge import path_lengths
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 
 
 @dataclass(frozen=True)

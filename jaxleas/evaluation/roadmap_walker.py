@@ -5,15 +5,20 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Bool
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exact import Walker
 from jaxleas.evaluation.judge import CellRollOut
 from jaxleas.evaluation.starts import Grounds, Starts
-from jaxleas.guide.registry import Edges
-from jaxleas.guide.roadmaps import Budget, Navigation, Navigator, Places
-from jaxleas.guide.roadmaps.navigation import motion_at
-from jaxleas.guide.roadmaps.tuning import make_navigator
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.guide import (
+    Budget,
+    Edges,
+    Navigation,
+    Navigator,
+    Places,
+    SteeringMethod,
+    make_navigator,
+    motion_at,
+)
 from jaxleas.types import GuidePath, RootMotion
 
 CONNECTIONS = 200

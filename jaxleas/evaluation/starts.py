@@ -11,14 +11,10 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.standing import standing_position
+from jaxleas.envs.steering import SteeringEnv, standing_position
 from jaxleas.evaluation.suites import Cell
-from jaxleas.geometry.rotations import wrap_angle_on_host
-from jaxleas.terrain.atlas import Atlas, make_atlas
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.rasterise import rasterise
-from jaxleas.terrain.scenarios import Scenario
+from jaxleas.geometry import wrap_angle_on_host
+from jaxleas.terrain import Atlas, HeightMap, Scenario, make_atlas, rasterise
 from jaxleas.types import InputError, RootMotion, is_ground
 
 RESOLUTION = 0.04

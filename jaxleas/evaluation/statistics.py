@@ -2,7 +2,7 @@
 
 import math
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 NORMAL_95 = 1.959963984540054
 """Two-sided 95 % quantile of the standard normal distribution."""

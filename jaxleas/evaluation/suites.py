@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from jaxleas.evaluation.recipes import RECIPES, Expectation, Recipe, Row
-from jaxleas.terrain.scenarios import SCENARIOS, Scenario
-from jaxleas.terrain.seeds import EVALUATION_SEED, TUNING_SEED
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import EVALUATION_SEED, SCENARIOS, TUNING_SEED, Scenario
+from jaxleas.types import InputError
 
 STARTS_PER_SCENE = RECIPES["transitions"].starts_per_scene
 """Approximate number of starts per scene; a cell spreads its starts over many scenes."""

@@ -1,7 +1,7 @@
 """Titles of cells and methods for readers, and the colours of methods."""
 
-from jaxleas.contacts.registry import PLANNERS, title_of
-from jaxleas.guide.registry import Method, method_of
+from jaxleas.contacts import PLANNERS, title_of
+from jaxleas.guide import Method, method_of
 
 _REFINED = "leas_p2_"  # followed by the name of the planner that the policy was refined against
 _REFINED_COLOUR = "#c33d2e"

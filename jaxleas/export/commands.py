@@ -35,8 +35,8 @@ def export(
             raise InputError("a page needs both --page DIR and --terrain FILE; nothing was written")
         _export_run(Path(run), out, allow)
         return
-    from jaxleas.envs.registry import DEFAULT_TASK, PAGES
-    from jaxleas.terrain.importers import import_terrain
+    from jaxleas.envs import DEFAULT_TASK, PAGES
+    from jaxleas.terrain import import_terrain
 
     file = Path(run)
     task = DEFAULT_TASK if file.suffix == ".onnx" else _task_of(file, allow)
@@ -52,8 +52,8 @@ def export(
 
 
 def _task_of(folder: Path, allow: Sequence[str]) -> str:
-    from jaxleas.runs.folder import policy_file
-    from jaxleas.training.run_config import load_run_config
+    from jaxleas.runs import policy_file
+    from jaxleas.training import load_run_config
 
     policy_file(folder)
     return load_run_config(folder / "config.yaml", allow=allow).env.task
@@ -63,13 +63,11 @@ def _export_run(folder: Path, out: Path | None, allow: Sequence[str]) -> Path:
     """Export a run; return the folder of the artifacts."""
     import jax
 
-    from jaxleas.configuration.loading import to_yaml
+    from jaxleas.configuration import to_yaml
     from jaxleas.export.recording import record_observations
     from jaxleas.export.write import export_policy
-    from jaxleas.runs.folder import policy_file
-    from jaxleas.training.policy import read_policy
-    from jaxleas.training.run_config import load_run_config, make_task
-    from jaxleas.training.worlds import held_out_world
+    from jaxleas.runs import policy_file
+    from jaxleas.training import held_out_world, load_run_config, make_task, read_policy
 
     if folder.is_file():
         raise InputError(f"{folder} is a file; the run folder, as train.py writes it, would do")
@@ -91,7 +89,7 @@ def _export_run(folder: Path, out: Path | None, allow: Sequence[str]) -> Path:
 
 def success_of(run: Path) -> list[dict[str, Any]] | None:
     """Return the cells of the run's results on the transitions suite, if it was evaluated."""
-    from jaxleas.evaluation.examination import evaluation_file
+    from jaxleas.evaluation import evaluation_file
     from jaxleas.files import read_json
 
     file = evaluation_file(run, "transitions")

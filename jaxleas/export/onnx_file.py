@@ -5,10 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.envs.heads import Categorical, Head
-from jaxleas.training.normaliser import MAX_NORMALISED
-from jaxleas.training.policy import Policy
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.envs import Categorical, Head
+from jaxleas.training import MAX_NORMALISED, Policy
+from jaxleas.types import OnnxNodes
 
 OPSET = 17
 IR_VERSION = 8  # the version that goes with opset 17: every runtime since 2022 reads it

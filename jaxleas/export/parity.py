@@ -10,7 +10,7 @@ from jaxtyping import Float
 from jaxleas.export.errors import ExportError
 from jaxleas.export.recording import LEAST_OBSERVATIONS
 from jaxleas.export.stablehlo import stablehlo_from_bytes
-from jaxleas.training.policy import Policy
+from jaxleas.training import Policy
 
 TOLERANCE = 1e-5  # per number of a command, in its unit; relative to its range if beyond 1
 _MOST_TIES = 1e-3  # share of choices that may differ: two may be equally likely within rounding

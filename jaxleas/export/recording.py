@@ -9,12 +9,8 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool
-from jaxleas.envs.starts import pool_of, take
-from jaxleas.training.policy import Policy
-from jaxleas.training.ppo_params import task_numbers
-from jaxleas.training.walkers.host import generator_of
+from jaxleas.envs import HostPool, Task, pool_of, take
+from jaxleas.training import Policy, generator_of, task_numbers
 
 LEAST_OBSERVATIONS = 10_000
 Record = Callable[[Policy, Any, Array], tuple[Any, Any]]

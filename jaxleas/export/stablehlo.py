@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jax import export as jax_export
 
-from jaxleas.training.policy import Policy
+from jaxleas.training import Policy
 from jaxleas.types import InputError
 
 PLATFORMS = ("cpu", "cuda", "tpu")

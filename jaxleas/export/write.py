@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.envs.environment import TaskConfig
+from jaxleas.envs import TaskConfig
 from jaxleas.export.onnx_file import OPSET, build_onnx
 from jaxleas.export.parity import TOLERANCE, largest_difference
 from jaxleas.export.stablehlo import PLATFORMS, to_stablehlo
 from jaxleas.files import write_bytes, write_json
-from jaxleas.training.policy import Policy
+from jaxleas.training import Policy
 
 VERSION = 1  # format of export.json
 

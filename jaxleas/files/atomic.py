@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 # Names that `tempfile.mkstemp` makes of ".NAME." and the suffix: eight letters between them.
 _TEMPORARY = re.compile(r"\..+\.[a-z0-9_]{8}(\.[A-Za-z0-9]+)?")

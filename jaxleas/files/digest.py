@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 from jaxleas.files.reading import is_file
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _BLOCK = 2**20
 

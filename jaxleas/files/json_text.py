@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any, NoReturn
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_BYTES = 64 * 2**20
 MAX_CONTAINERS = 4_000_000

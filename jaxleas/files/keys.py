@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def refuse_misspelt_keys(where: str | Path, keys: Iterable[str], known: Iterable[str]) -> None:

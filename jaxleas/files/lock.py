@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Self
 
 from jaxleas.files.lock_holder import LOCK, SILENCE, Holder, silence_of
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 PULSE = 10.0
 """Interval at which the holder touches its lock [s]."""

@@ -15,7 +15,7 @@ from typing import IO
 
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_BYTES = 2**30  # a larger array file is a mistake or an attack, not a map
 MAX_MEMBERS = 10_000

@@ -9,7 +9,7 @@ import numpy as np
 from jaxleas.files.json_text import MAX_BYTES as MAX_JSON_BYTES
 from jaxleas.files.json_text import parse_json
 from jaxleas.files.npz import MAX_BYTES, DamagedError, read_arrays, read_plain_array
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def read_json(path: str | Path) -> Any:

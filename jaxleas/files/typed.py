@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from jaxleas.files.reading import read_json, require_version
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 T = TypeVar("T")
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True)

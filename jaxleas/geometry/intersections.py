@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.geometry.polytopes import Polytope
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 TOUCHING = 1e-9
 """Distance below which sets meet [m]: touching counts."""

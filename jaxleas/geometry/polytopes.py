@@ -9,7 +9,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from jaxleas.geometry.boxes import Box
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _SAME_FACE = 1e-7  # largest difference of faces in one plane that the hull's triangulation split
 MAX_FACES = 10_000

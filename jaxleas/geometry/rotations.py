@@ -7,7 +7,7 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.xla.angles import sine_cosine
+from jaxleas.xla import sine_cosine
 
 
 def rotate_by_yaw(vector: Float[Array, "*batch D"], yaw: Float[Array, "*batch"]) -> Array:

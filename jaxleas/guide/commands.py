@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jaxleas.guide.registry import SteeringName, find_method
-from jaxleas.terrain.reading import READING, Reading
+from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.files import Reason
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.terrain import HeightMap
     from jaxleas.types import Query
 
 MAX_CONFIGURATIONS = 20_000_000  # in all paths together: about a gigabyte during the roll-out
@@ -49,12 +49,12 @@ def rollout(
         allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
             condition; by default R* and C.
     """
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.picture import draw_guide_paths, require_picture
     from jaxleas.guide.rollout import paths
-    from jaxleas.terrain.importers import import_terrain
+    from jaxleas.terrain import import_terrain
 
     asked = read_queries(queries)
     _require_sizes(steps, len(asked), out)
@@ -90,10 +90,10 @@ def walk_queries(
     """Return the roll-out of queries on one height map."""
     import jax.numpy as jnp
 
-    from jaxleas.geometry.rotations import wrap_angle_on_host
+    from jaxleas.geometry import wrap_angle_on_host
     from jaxleas.guide.places import walking_heights
     from jaxleas.guide.rollout import Trips, roll_out
-    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.terrain import make_atlas
     from jaxleas.types import RootMotion
 
     yaw = np.array([query.yaw for query in queries])

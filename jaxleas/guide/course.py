@@ -9,9 +9,9 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.guide.trips import RollOut
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 from jaxleas.types import RootMotion
 
 

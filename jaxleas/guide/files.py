@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from jaxleas.files import read_json, read_npz, require_version_array, write_npz
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap
 from jaxleas.types import GuidePath, InputError, Query
 
 Reason = Literal["reached", "invalid", "stopped"]

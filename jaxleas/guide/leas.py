@@ -4,11 +4,10 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.motion import integrate
+from jaxleas.envs.steering import SteeringEnv, integrate
 from jaxleas.guide.onnx_policy import OnnxLeas, OnnxPolicy
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.training.policy import Policy
+from jaxleas.training import Policy
 from jaxleas.types import InputError, RootMotion
 
 

@@ -5,11 +5,11 @@ from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
-from jaxleas.conditions.named import STANDARD, harmless
-from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.conditions import STANDARD, harmless
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
-from jaxleas.runs.folder import policy_file
-from jaxleas.training.policy import Policy, read_policy
+from jaxleas.runs import policy_file
+from jaxleas.training import Policy, read_policy
 from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")

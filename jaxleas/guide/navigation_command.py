@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from jaxleas.guide.registry import Method, SteeringName, find_method
-from jaxleas.terrain.reading import READING, Reading
+from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.roadmaps import Navigation
     from jaxleas.guide.steering_method import SteeringMethod
 
@@ -62,8 +62,8 @@ def navigate(
     from jaxleas.guide.roadmaps.ompl import import_ompl
     from jaxleas.guide.roadmaps.tuning import make_navigator
     from jaxleas.guide.starts import start_motion
-    from jaxleas.terrain.importers import import_terrain
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.terrain import import_terrain
+    from jaxleas.xla import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)
     goal, _ = _place("--to", to, may_turn=False)
@@ -114,8 +114,7 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
 
 
 def _steering(method: Method, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
-    from jaxleas.envs.steering.config import SteeringConfig
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
 
     if policy is None:

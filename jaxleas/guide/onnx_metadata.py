@@ -6,9 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.description import FORMAT, describe_observation
-from jaxleas.envs.steering.layout import layout_named
+from jaxleas.envs.steering import FORMAT, SteeringConfig, describe_observation, layout_named
 from jaxleas.files import parse_json
 from jaxleas.types import InputError
 

@@ -9,10 +9,7 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
-from jaxleas.envs.steering.motion import integrate
+from jaxleas.envs.steering import ACTION_SIZE, SteeringConfig, SteeringEnv, integrate, layout_named
 from jaxleas.files import read_bytes
 from jaxleas.guide.onnx_graph import require_plain_graph
 from jaxleas.guide.onnx_metadata import INPUT, OUTPUT, read_config

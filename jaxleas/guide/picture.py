@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxleas.files import atomic_path
 from jaxleas.guide.files import Reason
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap
 from jaxleas.types import GuidePath, InputError, Query
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def draw_navigation(
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
     """
-    from jaxleas.terrain.draw import draw_height_map
+    from jaxleas.terrain import draw_height_map
 
     require_picture(path)
     ax = draw_height_map(terrain)
@@ -106,7 +106,7 @@ def draw_guide_paths(
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.
     """
-    from jaxleas.terrain.draw import draw_height_map
+    from jaxleas.terrain import draw_height_map
 
     require_picture(path)
     ax = draw_height_map(terrain)

@@ -8,11 +8,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.conditions import collision, strict_reachability
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.geometry import wrap_angle_on_host
 from jaxleas.robots import Robot
-from jaxleas.terrain.atlas import make_atlas
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap, make_atlas
 from jaxleas.types import InputError, RootMotion, RootPose, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)

@@ -7,8 +7,8 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.steering.config import MotionLimits
-from jaxleas.geometry.rotations import wrap_angle
+from jaxleas.envs.steering import MotionLimits
+from jaxleas.geometry import wrap_angle
 from jaxleas.guide.double_integrator import Connection, connect
 from jaxleas.types import InputError, RootMotion
 

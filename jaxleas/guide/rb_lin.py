@@ -5,8 +5,8 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.steering.config import MotionLimits
-from jaxleas.geometry.rotations import wrap_angle
+from jaxleas.envs.steering import MotionLimits
+from jaxleas.geometry import wrap_angle
 from jaxleas.types import InputError, RootMotion
 
 # A heading counts as facing the goal if walking along it would miss the goal by less than this [m].

@@ -4,14 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
-from jaxleas.configuration.registry import Registry, is_own
-from jaxleas.types.errors import InputError
+from jaxleas.configuration import Registry, is_own
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.envs.steering.env import SteeringEnv
+    from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.onnx_policy import OnnxPolicy
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.training.policy import Policy
+    from jaxleas.training import Policy
 
 _ROADMAP = "_rrt"
 

@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.guide.course import Course, OnTheWay
 from jaxleas.guide.steering_method import SteeringMethod
 from jaxleas.guide.trips import RollOut, Trips

@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import minimum_filter
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.guide.places import HEADINGS, Places
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError, RootMotion, RootPose
 
 MOST_PLACES = 5_000

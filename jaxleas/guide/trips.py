@@ -4,7 +4,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 from jaxleas.types import RootMotion
 
 

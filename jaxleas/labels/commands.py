@@ -5,14 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import DEFAULT_JUDGE, PlannerName, find_planner
+from jaxleas.contacts import DEFAULT_JUDGE, PlannerName, find_planner, settings_from
 from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from jaxleas.files import FolderLock
-    from jaxleas.workers.processes import Workers
+    from jaxleas.workers import Workers
 
 
 def label(
@@ -70,7 +69,7 @@ def label(
     from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
-    from jaxleas.workers.processes import require_count
+    from jaxleas.workers import require_count
 
     given = {
         "keep_every": keep_every,
@@ -138,7 +137,7 @@ def _engage(workers: str, processes: int | None, tasks: int) -> "Workers":
     from jaxleas.labels.judging import planner_workers
 
     if workers == "ray":
-        from jaxleas.workers.ray_workers import RayWorkers
+        from jaxleas.workers import RayWorkers
 
         return RayWorkers(processes)
     return planner_workers(max(1, min(processes or os.cpu_count() or 1, tasks)))

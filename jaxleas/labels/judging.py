@@ -7,15 +7,11 @@ from typing import Self
 
 import numpy as np
 
-from jaxleas.contacts.planner import AskedGuides
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import PLANNERS, find_planner
-from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts import PLANNERS, AskedGuides, PlannerSettings, find_planner, require_settings
 from jaxleas.labels.planners import ask
 from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import Scene
+from jaxleas.types import GuidePath, InputError, Verdict
 from jaxleas.workers import Workers, workers_for
 
 PLANNER_MODULES = (

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from jaxleas.guide.files import read_guide_paths
+from jaxleas.guide import read_guide_paths
 from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import judge
 from jaxleas.labels.shards import Asked, Shard, write_shard
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.types.errors import InputError
-from jaxleas.workers.processes import Workers
+from jaxleas.terrain import load_scene
+from jaxleas.types import InputError
+from jaxleas.workers import Workers
 
 
 def plan_shards(

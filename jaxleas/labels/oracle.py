@@ -2,10 +2,7 @@
 
 from dataclasses import dataclass
 
-from jaxleas.contacts.planner import Planner
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import find_planner
-from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts import Planner, PlannerSettings, find_planner, require_settings
 from jaxleas.robots import DEFAULT_ROBOT
 
 

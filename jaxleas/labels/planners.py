@@ -2,12 +2,9 @@
 
 from collections.abc import Sequence
 
-from jaxleas.contacts.planner import AskedGuides
-from jaxleas.contacts.planner_settings import require_settings
-from jaxleas.contacts.registry import find_planner
-from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts import AskedGuides, PlannerSettings, find_planner, require_settings
 from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, Verdict
 
 

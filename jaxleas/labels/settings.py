@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jaxleas.configuration.yaml_text import parse_yaml
-from jaxleas.types.errors import InputError
+from jaxleas.configuration import parse_yaml
+from jaxleas.types import InputError
 
 
 def with_parameters(given: Mapping[str, Any], further: Mapping[str, Any]) -> dict[str, Any]:

@@ -7,13 +7,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from jaxleas.contacts.registry import PLANNERS, find_planner
-from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts import PLANNERS, PlannerSettings, find_planner
 from jaxleas.files import read_json, require_version, write_json
 from jaxleas.labels.verdict import verdict_from_json, verdict_to_json
 from jaxleas.robots import DEFAULT_ROBOT, robot_digest
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 VERSION = 2
 

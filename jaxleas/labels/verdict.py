@@ -6,8 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError, create_model
 
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 ADDED_SINCE = {"cause": None}
 """Keys that files from before lack, with what they stand for there."""

@@ -1,7 +1,5 @@
 """Records of runs: listed and compared."""
 
-from jaxleas.records.comparison import Comparison, compare_runs
-from jaxleas.records.finding import find_runs
-from jaxleas.records.record import RunRecord, State, read_record
+import lazy_loader
 
-__all__ = ["Comparison", "RunRecord", "State", "compare_runs", "find_runs", "read_record"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -7,15 +7,14 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.configuration.fields import nearest
-from jaxleas.configuration.yaml_text import parse_yaml
+from jaxleas.configuration import nearest, parse_yaml
 from jaxleas.files import write_bytes, write_json, write_text
 from jaxleas.records.comparison import compare_runs
 from jaxleas.records.finding import find_runs
 from jaxleas.records.listing import as_json, table
 from jaxleas.records.record import RunRecord, State, defaults, read_record
 from jaxleas.records.side_by_side import draw, plain, to_html, to_json
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _KEYS: dict[str, Callable[[RunRecord], Any]] = {
     "begun": lambda run: run.created,

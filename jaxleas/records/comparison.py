@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.evaluation import wilson_interval
 from jaxleas.records.record import HELD_OUT, RunRecord
 
 MARKS = 10

@@ -6,16 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from jaxleas.configuration.former import with_present_names
-from jaxleas.configuration.yaml_text import read_mapping
-from jaxleas.envs.registry import DEFAULT_TASK, TASKS
-from jaxleas.evaluation.result_file import CellResult, Evaluation, read_evaluation
+from jaxleas.configuration import read_mapping, with_present_names
+from jaxleas.envs import DEFAULT_TASK, TASKS
+from jaxleas.evaluation import CellResult, Evaluation, read_evaluation
 from jaxleas.files import is_held, read_json
-from jaxleas.guide.registry import is_policy
-from jaxleas.runs.metrics import read_metrics
-from jaxleas.training.config import RunConfig
-from jaxleas.training.run_config import run_config_of
-from jaxleas.types.errors import InputError
+from jaxleas.guide import is_policy
+from jaxleas.runs import read_metrics
+from jaxleas.training import RunConfig, run_config_of
+from jaxleas.types import InputError
 
 State = Literal["finished", "running", "interrupted", "damaged"]
 STATES: tuple[State, ...] = get_args(State)

@@ -5,12 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jaxleas.evaluation.titles import cell_title
+from jaxleas.evaluation import cell_title
 from jaxleas.records.comparison import Comparison, Score, apart
 from jaxleas.records.listing import as_json, as_text, cut, duration
 from jaxleas.records.record import HELD_OUT, SUITE
-from jaxleas.reports import align, page_template, percent
-from jaxleas.reports.learning_curves import COLOURS, DPI, series
+from jaxleas.reports import COLOURS, DPI, align, page_template, percent, series
 
 TEMPLATE = "comparison.html"
 WIDEST = 44

@@ -1,21 +1,5 @@
 """Reports: tables, pictures and pages of what was measured; nothing here measures or judges."""
 
-from jaxleas.reports.figure_pictures import draw_figures
-from jaxleas.reports.learning_curves import series
-from jaxleas.reports.page import page_template
-from jaxleas.reports.published import thesis
-from jaxleas.reports.report import inline, write_report
-from jaxleas.reports.table import align, percent
-from jaxleas.reports.thesis_tables import thesis_tables
+import lazy_loader
 
-__all__ = [
-    "align",
-    "draw_figures",
-    "inline",
-    "page_template",
-    "percent",
-    "series",
-    "thesis",
-    "thesis_tables",
-    "write_report",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

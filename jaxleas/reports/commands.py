@@ -5,28 +5,31 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.contacts.registry import PLANNERS, PlannerName, find_planner
-from jaxleas.evaluation.comparison import Planning, compare, side_by_side_file
-from jaxleas.evaluation.contenders import make_contenders, parse_policies
-from jaxleas.evaluation.examination import (
+from jaxleas.contacts import PLANNERS, PlannerName, PlannerSettings, find_planner, settings_from
+from jaxleas.evaluation import (
+    Evaluation,
+    Planning,
+    Reporter,
+    compare,
     examine,
     keep_evaluation,
     load_candidate,
+    load_refusal,
+    make_contenders,
+    make_report_basis,
+    make_suite,
+    parse_policies,
+    read_evaluation,
     run_evaluations,
+    side_by_side_file,
+    write_evaluation,
 )
-from jaxleas.evaluation.progress import Reporter
-from jaxleas.evaluation.refusal import load_refusal
-from jaxleas.evaluation.report_basis import make_report_basis
-from jaxleas.evaluation.result_file import Evaluation, read_evaluation, write_evaluation
-from jaxleas.evaluation.suites import make_suite
-from jaxleas.guide.registry import ResultName
-from jaxleas.labels import PlannerSettings
-from jaxleas.labels.settings import settings_of, with_parameters
+from jaxleas.guide import ResultName
+from jaxleas.labels import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def evaluate(
@@ -213,7 +216,7 @@ def report(run: Path, out: Path | None = None) -> Path:
     Raises:
         InputError: the path is not a run folder, or holds no policy yet.
     """
-    from jaxleas.reports.report import write_report
+    from jaxleas.reports.run_report import write_report
 
     run = Path(run)
     if not run.is_dir():

@@ -6,10 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.contacts.registry import title_of
-from jaxleas.evaluation.figure_file import Figures, StepRow
-from jaxleas.evaluation.figures import BASIC, COURSE
-from jaxleas.evaluation.titles import cell_title, method_colour, method_title
+from jaxleas.contacts import title_of
+from jaxleas.evaluation import (
+    BASIC,
+    COURSE,
+    Figures,
+    StepRow,
+    cell_title,
+    method_colour,
+    method_title,
+)
 from jaxleas.reports.gallery import Picture
 from jaxleas.reports.published import thesis
 

@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.judge import CellRollOut, roll_out_cell
-from jaxleas.evaluation.report_basis import ReportBasis
-from jaxleas.evaluation.starts import Grounds, draw_starts
-from jaxleas.evaluation.suites import Cell
-from jaxleas.evaluation.titles import cell_title, method_title
-from jaxleas.guide.steering_method import SteeringMethod
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import (
+    Cell,
+    CellRollOut,
+    Grounds,
+    ReportBasis,
+    cell_title,
+    draw_starts,
+    method_title,
+    roll_out_cell,
+)
+from jaxleas.guide import SteeringMethod
 from jaxleas.reports.pictures import (
     GOAL,
     INVALID,

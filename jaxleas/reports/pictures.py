@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.evaluation.judge import CellRollOut
-from jaxleas.geometry.rotations import wrap_angle_on_host
+from jaxleas.evaluation import CellRollOut
+from jaxleas.geometry import wrap_angle_on_host
 from jaxleas.robots import Robot
-from jaxleas.terrain.draw import VOID_COLOUR, draw_height_map
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import VOID_COLOUR, HeightMap, draw_height_map
 from jaxleas.types import is_ground
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from functools import cache
 from importlib import resources
 from typing import Literal
 
-from jaxleas.configuration.strict import Strict
-from jaxleas.evaluation.result_file import CellResult
+from jaxleas.configuration import Strict
+from jaxleas.evaluation import CellResult
 
 
 class PublishedRow(Strict):

@@ -8,12 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import Judged, Walker, ask
-from jaxleas.evaluation.height_band import height_band
-from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
-from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation import (
+    Cell,
+    Grounds,
+    Judged,
+    Suite,
+    Walker,
+    ask,
+    cell_title,
+    draw_starts,
+    height_band,
+    make_grounds,
+    method_title,
+)
 from jaxleas.files import write_bytes
 from jaxleas.labels import Judge
 from jaxleas.reports.gallery import legend

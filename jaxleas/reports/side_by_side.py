@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 
-from jaxleas.contacts.registry import measures_of, title_of
-from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.contacts import measures_of, title_of
+from jaxleas.evaluation import CellResult, Evaluation, cell_title, method_title
 from jaxleas.reports.published import published
 from jaxleas.reports.table import align, percent
 

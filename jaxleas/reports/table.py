@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from jaxleas.evaluation.result_file import AreaResult, CellResult, Evaluation
-from jaxleas.evaluation.titles import cell_title, method_title
-from jaxleas.guide.registry import LEAS
+from jaxleas.evaluation import AreaResult, CellResult, Evaluation, cell_title, method_title
+from jaxleas.guide import LEAS
 from jaxleas.reports.published import published_value
 
 THESIS_METHOD = LEAS.key

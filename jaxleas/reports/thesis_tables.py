@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from jaxleas.evaluation.result_file import CellResult, Evaluation
-from jaxleas.evaluation.titles import cell_title, method_title
+from jaxleas.evaluation import CellResult, Evaluation, cell_title, method_title
 from jaxleas.reports.published import PublishedRow, PublishedTable, thesis
 from jaxleas.reports.table import percent
 

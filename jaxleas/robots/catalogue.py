@@ -8,7 +8,7 @@ from pathlib import Path
 
 from jaxleas.robots.files import read_robot
 from jaxleas.robots.robot import Robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 DEFAULT_ROBOT = "talos"
 """Name of the robot of commands that name none, and of files from before robots were recorded."""

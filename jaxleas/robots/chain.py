@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
-from jaxleas.types.poses import Pose
+from jaxleas.types import InputError, Pose
 
 MOST_JOINTS = 100
 _MIRROR = np.array([1.0, -1.0, 1.0])

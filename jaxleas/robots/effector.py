@@ -6,8 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
-from jaxleas.types.poses import Pose
+from jaxleas.types import InputError, Pose
 
 Kind = Literal["foot", "palm", "point_foot"]
 """A foot stands with a sole, a palm presses against surfaces of any slope, a point foot stands

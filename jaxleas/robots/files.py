@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from jaxleas.files import read_json, write_json
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Box, Polytope
 from jaxleas.robots.effector import Effector
 from jaxleas.robots.limb_files import (
     limb_model_from_json,
@@ -18,7 +17,7 @@ from jaxleas.robots.limb_files import (
 )
 from jaxleas.robots.limb_model import Body, LimbModel
 from jaxleas.robots.robot import Limb, Robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def read_robot(path: str | Path) -> Robot:

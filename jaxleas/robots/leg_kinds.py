@@ -6,7 +6,7 @@ import numpy as np
 
 from jaxleas.robots.effector import Effector
 from jaxleas.robots.limb_model import LimbModel
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _ALIKE = 1e-6
 """Tolerance of the numbers of two limbs that are the same [m, rad and kg]."""

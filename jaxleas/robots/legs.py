@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.robots.leg_kinds import require_that_feet_can_stand, same_model
 from jaxleas.robots.limb_model import Body, LimbModel
 from jaxleas.robots.robot import Robot
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True, eq=False)

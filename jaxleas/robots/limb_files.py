@@ -4,12 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Box, Polytope
 from jaxleas.robots.chain import SerialChain
 from jaxleas.robots.limb_model import Capsule, LimbModel, LinkBox
-from jaxleas.types.poses import Pose
-from jaxleas.types.quaternions import quaternion_of
+from jaxleas.types import Pose, quaternion_of
 
 
 def limb_model_to_json(model: LimbModel) -> dict[str, Any]:

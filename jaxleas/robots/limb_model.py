@@ -6,12 +6,11 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Box, Polytope
 from jaxleas.robots.chain import ChainPosture, SerialChain, chain_posture
 from jaxleas.robots.numeric_inverse import draw_starts, newton_inverse, numeric_inverse
 from jaxleas.robots.spherical_leg import SphericalLeg
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _MIRROR = np.array([1.0, -1.0, 1.0])
 

@@ -8,11 +8,10 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.geometry.boxes import Box
-from jaxleas.geometry.polytopes import Polytope
+from jaxleas.geometry import Box, Polytope
 from jaxleas.robots.effector import Effector, foot_of_limb
 from jaxleas.robots.limb_model import Body, LimbModel
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True, eq=False)

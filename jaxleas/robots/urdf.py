@@ -9,8 +9,7 @@ import numpy as np
 
 from jaxleas.files import read_bytes
 from jaxleas.robots.chain import SerialChain
-from jaxleas.types.errors import InputError
-from jaxleas.types.poses import Pose
+from jaxleas.types import InputError, Pose
 
 _HELD = ("fixed",)
 _MOVED = ("revolute", "continuous")

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 KEYS = ("threefry2x32", "rbg", "unsafe_rbg")
 """JAX's kinds of random keys."""

@@ -15,10 +15,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from jaxleas.files import atomic_path, parse_json, sweep_temporaries
-from jaxleas.files.npz import DamagedError, read_arrays
+from jaxleas.files import DamagedError, atomic_path, parse_json, read_arrays, sweep_temporaries
 from jaxleas.runs.checkpoint_leaves import pack, unpack
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 FORMAT = 1
 State = TypeVar("State")

@@ -16,7 +16,7 @@ from typing import Self
 
 from jaxleas.files import FolderLock, read_json, sweep_temporaries, write_json, write_text
 from jaxleas.runs.provenance import collect_provenance
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 FORMAT = 1
 

@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from jaxleas.files import parse_json, write_text
 from jaxleas.runs.watching import Audience, Status, open_watchers
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.surrogates.settings import FitSettings
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 USUAL = FitSettings()
 
@@ -39,13 +39,13 @@ def fit(
     from pydantic import ValidationError
 
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
-    from jaxleas.guide.loading import load_policy
+    from jaxleas.guide import load_policy
     from jaxleas.robots import robot_digest
     from jaxleas.surrogates.fit import fit as fit_surrogate
     from jaxleas.surrogates.label_files import read_labels
     from jaxleas.surrogates.surrogate import Identity
     from jaxleas.surrogates.surrogate_file import write_surrogate
-    from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION
+    from jaxleas.terrain import DEFAULT_RESOLUTION
 
     try:
         settings = FitSettings(epochs=epochs, code=code, hidden=hidden, seed=seed)

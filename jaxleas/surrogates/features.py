@@ -5,7 +5,7 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
-from jaxleas.geometry.rotations import rotate_by_yaw, wrap_angle
+from jaxleas.geometry import rotate_by_yaw, wrap_angle
 from jaxleas.types import RootMotion
 
 MOTION_FEATURES = 7  # displacement, turn, velocity

@@ -10,7 +10,7 @@ import numpy as np
 import optax
 from jax import Array
 
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv
 from jaxleas.surrogates.calibration import platt
 from jaxleas.surrogates.features import mirrored, walk_features
 from jaxleas.surrogates.network import Weights, initial_weights, recur
@@ -18,7 +18,7 @@ from jaxleas.surrogates.settings import FitSettings
 from jaxleas.surrogates.surrogate import Identity, Surrogate
 from jaxleas.surrogates.verdict_report import failure_along, report_on
 from jaxleas.surrogates.walks import LabelledWalks
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 from jaxleas.types import InputError, RootMotion
 
 LEAST_FAILURES = 20  # on the terrains used for learning

@@ -12,12 +12,10 @@ from typing import Annotated, Any
 from pydantic import BaseModel, Field
 
 from jaxleas.files import is_file, read_json, require_version, typed
-from jaxleas.guide.files import read_guide_paths
+from jaxleas.guide import read_guide_paths
 from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
-from jaxleas.terrain.atlas import Atlas, make_atlas
-from jaxleas.terrain.mesh_scene import load_scene
-from jaxleas.terrain.rasterise import rasterise
+from jaxleas.terrain import Atlas, load_scene, make_atlas, rasterise
 from jaxleas.types import GuidePath, InputError
 
 MOST_KEPT = 64

@@ -1,7 +1,7 @@
 """Surrogates named in a configuration: `{surrogate: FILE}` among its conditions."""
 
-from jaxleas.conditions.named import SurrogateSettings
-from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.conditions import SurrogateSettings
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import require_digest
 from jaxleas.surrogates.foresight import SurrogateForesight
 from jaxleas.surrogates.surrogate_file import read_surrogate, require_fit

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 
 
 class FitSettings(Strict):

@@ -11,9 +11,8 @@ from jax import Array
 from jaxtyping import Float, Int
 from pydantic import JsonValue
 
-from jaxleas.configuration.strict import Strict
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.configuration import Strict
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.robots import load_robot
 from jaxleas.surrogates.features import MOTION_FEATURES, near_points
 from jaxleas.surrogates.network import Weights, recur

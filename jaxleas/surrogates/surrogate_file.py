@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from pydantic import ValidationError
 
-from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import parse_json, read_npz, write_npz
 from jaxleas.surrogates.network import Weights
 from jaxleas.surrogates.surrogate import Identity, Surrogate

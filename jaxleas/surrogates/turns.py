@@ -14,7 +14,7 @@ from jax import Array
 from jaxtyping import Bool
 
 from jaxleas.conditions import Pick, everyone
-from jaxleas.xla.gather import take_along_inside
+from jaxleas.xla import take_along_inside
 
 GROUP = 128
 SPARE = 2.0  # room above the mean number of robots due, in standard deviations of that number

@@ -6,17 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.former import present_name
-from jaxleas.configuration.loading import load_config
-from jaxleas.configuration.values import require_field, require_value, with_values
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.envs.registry import TASKS
-from jaxleas.evaluation.suites import SUITED_TASKS, make_suite
+from jaxleas.configuration import (
+    load_config,
+    present_name,
+    require_field,
+    require_value,
+    with_values,
+)
+from jaxleas.contacts import settings_from
+from jaxleas.envs import TASKS
+from jaxleas.evaluation import SUITED_TASKS, make_suite
 from jaxleas.sweeps.config import Dimension, Exact, SweepConfig, TimeToSuccess
-from jaxleas.training.config import RunConfig
-from jaxleas.training.ppo_params import swept_fields
-from jaxleas.training.run_config import load_run_config, pinned
-from jaxleas.types.errors import InputError
+from jaxleas.training import RunConfig, load_run_config, pinned, swept_fields
+from jaxleas.types import InputError
 
 # Sections that define the measure must not be searched: trials would not be comparable.
 MEASURES = ("held_out.", "final.")

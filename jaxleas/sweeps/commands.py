@@ -60,7 +60,7 @@ def population(population: Path, *, out: Path, allow: tuple[str, ...] = ()) -> N
     from jaxleas.sweeps.population_folder import hold_population
     from jaxleas.sweeps.population_loop import train_population
     from jaxleas.sweeps.population_table import population_table
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.xla import keep_compiled_programs
 
     members = open_population(population, allow)
     use_all_cores()

@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from jaxleas.files import write_json, write_text
-from jaxleas.runs.interruption import Interruption
+from jaxleas.runs import Interruption
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import Objective
 from jaxleas.sweeps.folder import SweepFolder
@@ -24,7 +24,7 @@ from jaxleas.sweeps.open_trial import OpenTrial, result_of
 from jaxleas.sweeps.results import TrialResult, write_results
 from jaxleas.sweeps.runners import Runner
 from jaxleas.sweeps.study import Study
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.types import InputError, JaxleasError
 
 MOST_DEATHS = 3
 """Deaths of workers on the same job without a new examination after which it counts as failed."""

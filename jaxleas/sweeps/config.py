@@ -5,9 +5,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, JsonValue, model_validator
 
-from jaxleas.configuration.bounds import Count, Seed
-from jaxleas.configuration.strict import Strict
-from jaxleas.contacts.registry import DEFAULT_JUDGE, require_built_in
+from jaxleas.configuration import Count, Seed, Strict
+from jaxleas.contacts import DEFAULT_JUDGE, require_built_in
 
 Scalar = bool | int | float | str
 

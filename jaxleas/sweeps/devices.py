@@ -1,6 +1,6 @@
 """Cores as devices: the members of a population are divided among them."""
 
-from jaxleas.training.cores import cores, use_cores
+from jaxleas.training import cores, use_cores
 
 
 def use_all_cores() -> None:

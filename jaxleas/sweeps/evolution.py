@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.sweeps.config import Dimension
 
 Values = dict[str, Any]

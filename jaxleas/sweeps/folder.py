@@ -14,12 +14,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from uuid import uuid4
 
-from jaxleas.configuration.loading import load_config, to_yaml
+from jaxleas.configuration import load_config, to_yaml
 from jaxleas.files import FolderLock, read_typed, write_json, write_text
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import SweepConfig
-from jaxleas.training.run_config import load_run_config
-from jaxleas.types.errors import InputError
+from jaxleas.training import load_run_config
+from jaxleas.types import InputError
 
 VERSION = 1
 _BEGINNINGS = {"lock", "sweep.yaml", "base.yaml"}

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from jaxleas.files import InUseError, parse_json, read_typed, typed, write_json
-from jaxleas.types.errors import JaxleasError
+from jaxleas.types import JaxleasError
 
 LIFELINE = "--lifeline"
 ALLOW = "--allow"
@@ -132,7 +132,7 @@ def do_job(path: str | Path, allow: Sequence[str] = ()) -> None:
         InterruptedRunError: a signal asked to stop; everything done is saved.
     """
     from jaxleas.sweeps.config import Objective
-    from jaxleas.training.run_config import parse_run_config
+    from jaxleas.training import parse_run_config
 
     job = read_job(path)
     runs = job.runs
@@ -156,7 +156,7 @@ def do_job(path: str | Path, allow: Sequence[str] = ()) -> None:
 def _train_alone(run: Path, config: Any, allow: Sequence[str]) -> list[tuple[str, str]]:
     """Return state and reason of a training in its own program."""
     from jaxleas.sweeps.run_folders import hold_run_folder
-    from jaxleas.training.loop import NonFiniteError, train
+    from jaxleas.training import NonFiniteError, train
 
     def look() -> None:
         if stop_file(run).is_file():
@@ -185,7 +185,7 @@ def _train_together(
 
 
 def _outcome(run: Path, config: Any, objectives: Any, state: str, reason: str) -> Outcome:
-    from jaxleas.runs.metrics import read_metrics
+    from jaxleas.runs import read_metrics
     from jaxleas.sweeps.objectives import measure
 
     metrics = run / "metrics.jsonl"
@@ -212,7 +212,7 @@ def _die_with_parent() -> None:
 def work(path: str | Path, allow: Sequence[str] = ()) -> None:
     """Do a job in a process that has touched no device yet (`do_job`)."""
     from jaxleas.sweeps.devices import use_all_cores
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.xla import keep_compiled_programs
 
     if len(read_job(path).runs) > 1:
         use_all_cores()

@@ -4,15 +4,10 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from jaxleas.runs.checkpoints import Checkpoints
-from jaxleas.runs.metrics import MetricsLog
+from jaxleas.runs import Checkpoints, MetricsLog
 from jaxleas.sweeps.population import Population, member_of
 from jaxleas.sweeps.run_folders import hold_run_folder
-from jaxleas.training.config import RunConfig
-from jaxleas.training.loop import POLICY_FILE
-from jaxleas.training.policy import write_policy
-from jaxleas.training.stretches import numbers
-from jaxleas.training.train_state import TrainState
+from jaxleas.training import POLICY_FILE, RunConfig, TrainState, numbers, write_policy
 
 SUCCESS = "held_out/reached"
 

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from jaxleas.contacts.planner_settings import settings_from
-from jaxleas.evaluation.exact import exact_success
-from jaxleas.evaluation.suites import make_suite
-from jaxleas.runs.metrics import read_metrics
+from jaxleas.contacts import settings_from
+from jaxleas.evaluation import exact_success, make_suite
+from jaxleas.runs import read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
 
 SUCCESS = "held_out/reached"

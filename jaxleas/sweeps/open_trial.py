@@ -7,7 +7,7 @@ from typing import Any
 from jaxleas.sweeps.folder import SweepFolder
 from jaxleas.sweeps.job import Outcome, read_outcome
 from jaxleas.sweeps.results import TrialResult
-from jaxleas.training.config import RunConfig
+from jaxleas.training import RunConfig
 
 
 @dataclass

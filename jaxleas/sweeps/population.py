@@ -15,19 +15,24 @@ import numpy as np
 from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
-from jaxleas.configuration.fields import fields_of
-from jaxleas.configuration.values import value_of
-from jaxleas.envs.environment import Task
-from jaxleas.training.config import RunConfig
-from jaxleas.training.examination import make_examination
-from jaxleas.training.networks import make_networks
-from jaxleas.training.policy import Policy, policy_of
-from jaxleas.training.ppo import make_train_step
-from jaxleas.training.ppo_params import PpoParams, swept_fields
-from jaxleas.training.run_config import make_task
-from jaxleas.training.train_state import TrainState, initial_state
-from jaxleas.training.worlds import held_out_world, training_world
-from jaxleas.types.errors import InputError
+from jaxleas.configuration import fields_of, value_of
+from jaxleas.envs import Task
+from jaxleas.training import (
+    Policy,
+    PpoParams,
+    RunConfig,
+    TrainState,
+    held_out_world,
+    initial_state,
+    make_examination,
+    make_networks,
+    make_task,
+    make_train_step,
+    policy_of,
+    swept_fields,
+    training_world,
+)
+from jaxleas.types import InputError
 
 AXIS = "members"
 Metrics = dict[str, Array]

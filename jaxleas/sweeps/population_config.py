@@ -8,18 +8,13 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from jaxleas.configuration.former import present_name
-from jaxleas.configuration.loading import load_config
-from jaxleas.configuration.strict import Strict
-from jaxleas.configuration.values import require_field, with_values
-from jaxleas.envs.registry import TASKS
+from jaxleas.configuration import Strict, load_config, present_name, require_field, with_values
+from jaxleas.envs import TASKS
 from jaxleas.sweeps.border import check_dimension
 from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
-from jaxleas.training.config import RunConfig
-from jaxleas.training.ppo_params import swept_fields
-from jaxleas.training.run_config import load_run_config, pinned
-from jaxleas.types.errors import InputError
+from jaxleas.training import RunConfig, load_run_config, pinned, swept_fields
+from jaxleas.types import InputError
 
 
 class PopulationConfig(Strict):

@@ -19,8 +19,8 @@ from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig
 from jaxleas.sweeps.folder import hold, require_vacant
 from jaxleas.sweeps.population_config import Members
-from jaxleas.training.run_config import AnyRun, parse_run_config
-from jaxleas.types.errors import InputError
+from jaxleas.training import AnyRun, parse_run_config
+from jaxleas.types import InputError
 
 VERSION = 1
 RECORD = "population.json"

@@ -8,24 +8,22 @@ from typing import Any
 import jax
 import numpy as np
 
-from jaxleas.runs.checkpoints import Checkpoints
-from jaxleas.runs.interruption import Interruption
-from jaxleas.runs.progress import Progress
+from jaxleas.runs import Checkpoints, Interruption, Progress
 from jaxleas.sweeps.evolution import Values, evolve
 from jaxleas.sweeps.history import History
 from jaxleas.sweeps.member_files import SUCCESS, MemberFiles
 from jaxleas.sweeps.population import Population
 from jaxleas.sweeps.population_config import Members
-from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.stretches import (
+from jaxleas.training import (
     InterruptedRunError,
     Metrics,
+    PpoParams,
     Schedule,
     Stretch,
+    TrainState,
     non_finite,
     stretches,
 )
-from jaxleas.training.train_state import TrainState
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,10 @@
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from jaxleas.configuration.loading import to_yaml
-from jaxleas.runs.folder import RunFolder
-from jaxleas.training.config import RunConfig
-from jaxleas.training.run_config import load_run_config
-from jaxleas.types.errors import InputError
+from jaxleas.configuration import to_yaml
+from jaxleas.runs import RunFolder
+from jaxleas.training import RunConfig, load_run_config
+from jaxleas.types import InputError
 
 # Files of a run folder before the record that marks it as complete.
 _BEGINNINGS = {"lock", "config.yaml", "provenance.diff"}

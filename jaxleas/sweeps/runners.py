@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jaxleas.sweeps.job import ALLOW, LIFELINE, work
-from jaxleas.types.errors import InputError
-from jaxleas.workers.ray_workers import RayWorkers
+from jaxleas.types import InputError
+from jaxleas.workers import RayWorkers
 
 _COMMAND = (sys.executable, "-m", "jaxleas.sweeps.job")
 GRACE = 60.0  # time for workers to save after being asked to stop [s]

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 SECONDS = 10.0  # time to wait for a storage proxy
 

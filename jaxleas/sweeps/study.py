@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.loading import to_yaml
+from jaxleas.configuration import to_yaml
 from jaxleas.files import read_json, require_version, typed
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.draw import draw
@@ -13,7 +13,7 @@ from jaxleas.sweeps.folder import SweepFolder
 from jaxleas.sweeps.objectives import is_maximised
 from jaxleas.sweeps.results import VERSION, TrialResult
 from jaxleas.sweeps.storage import open_storage, require_optuna
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 OWNER, SWEEP, RESULT = "owner", "sweep", "result"  # attributes of trials and study
 

@@ -11,10 +11,7 @@ from jaxtyping import Float, Int, UInt32
 
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import NO_GROUND, InputError, is_ground
-from jaxleas.xla.angles import sine_cosine
-from jaxleas.xla.compute_once import compute_once
-from jaxleas.xla.gather import take_inside
-from jaxleas.xla.huge_pages import hold_in_huge_pages
+from jaxleas.xla import compute_once, hold_in_huge_pages, sine_cosine, take_inside
 
 _ROUND = 12582912.0  # 1.5 * 2^23: adding it to a float32 leaves a whole number in the last bits
 _ROUND_BITS = 0x4B400000  # the bits of _ROUND

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.configuration.yaml_text import read_mapping
+from jaxleas.configuration import read_mapping
 from jaxleas.terrain.solids import box_triangles, placed
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_BOXES = 100_000
 _NAMES = {

@@ -16,7 +16,7 @@ from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicabl
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.terrain.shaping import holes
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def show(

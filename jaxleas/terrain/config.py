@@ -4,8 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, PositiveFloat, model_validator
 
-from jaxleas.configuration.bounds import Fraction
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Fraction, Strict
 
 
 def _ordered(interval: tuple[float, float]) -> tuple[float, float]:

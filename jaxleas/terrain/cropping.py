@@ -7,10 +7,10 @@ import numpy as np
 from jaxleas.terrain.polygons import MIN_AREA, polygon_area_vector
 from jaxleas.terrain.reading import Rectangle
 from jaxleas.terrain.scene import Polygons, Scene, Touch
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
-    from jaxleas.geometry.polytopes import Polytope
+    from jaxleas.geometry import Polytope
 
 
 def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
@@ -19,7 +19,7 @@ def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
     Raises:
         InputError: no surface is left.
     """
-    from jaxleas.geometry.polytopes import Polytope  # here: the room of geometry loads JAX
+    from jaxleas.geometry import Polytope  # here, as it loads SciPy
 
     x_min, x_max, y_min, y_max = crop
     sides = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
@@ -32,7 +32,7 @@ def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
 
 
 def _cut(polygons: Polygons, inside: "Polytope") -> Polygons:
-    from jaxleas.geometry.clipping import clip_polygon
+    from jaxleas.geometry import clip_polygon
 
     cut = {name: clip_polygon(vertices, inside) for name, vertices in polygons.items()}
     return {

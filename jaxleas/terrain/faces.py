@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_POLYGON = 1000
 """Largest number of corners of one face."""

@@ -14,7 +14,7 @@ from jaxleas.files import read_bytes
 from jaxleas.terrain.deep_png import decode_deep_colour
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution, require_usable
 from jaxleas.terrain.reading import Reading
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 MAX_PNG_BYTES = 2**28

@@ -23,7 +23,7 @@ from jaxleas.terrain.rasterise import (
 )
 from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.shaping import moved, shaped
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 __all__ = ["import_mesh", "import_png", "import_terrain", "known_suffixes"]
 SEAM = 1e-3

@@ -11,7 +11,7 @@ from jaxleas.terrain.images import read_png
 from jaxleas.terrain.rasters import read_grid_map, read_tiff
 from jaxleas.terrain.reading import MAPPING, Reading
 from jaxleas.terrain.tables import read_csv, read_npy
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _GREY = ("z_min", "z_max", "zero_is_void")
 

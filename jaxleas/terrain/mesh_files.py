@@ -20,7 +20,7 @@ from jaxleas.terrain.off_files import read_off
 from jaxleas.terrain.ply_files import read_ply
 from jaxleas.terrain.reading import Up
 from jaxleas.terrain.text_numbers import lines_of, vectors, without_mark
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 MAX_TRIANGLES = 5_000_000

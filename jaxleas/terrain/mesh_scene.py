@@ -26,7 +26,7 @@ from jaxleas.terrain.polygons import (
 from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.terrain.shaping import require_rectangle
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 COPLANAR = 1e-6

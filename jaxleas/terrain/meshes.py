@@ -11,7 +11,7 @@ from jaxleas.terrain.mesh_formats import MESHES
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.reading import READING, Reading, Rectangle, Up, require_applicable
 from jaxleas.terrain.shaping import require_rectangle
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 SUFFIXES = tuple(MESHES)
 MIN_EXTENT, MAX_EXTENT = 0.5, 1000.0

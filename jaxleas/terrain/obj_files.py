@@ -13,7 +13,7 @@ from jaxtyping import Float, Int
 
 from jaxleas.terrain.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import lines_of, shown, vectors
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Broken = Callable[[str], InputError]
 LONG = 100

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.terrain.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import shown, vectors
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def read_off(

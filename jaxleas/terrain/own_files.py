@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, PositiveFloat, Tag
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.files import digest_of, require_digest
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.reading import Reading, Rectangle, Up
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 KEY = "terrain.files"  # name of the configuration field, for messages
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 FARTHEST = 10_000.0

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from jaxleas.terrain.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import shown
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Broken = Callable[[str], InputError]
 MAX_ROWS = 20_000_000

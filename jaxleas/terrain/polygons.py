@@ -5,7 +5,7 @@ import math
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 PLANARITY_TOLERANCE = 1e-3
 """Largest accepted distance of a vertex from the polygon's plane [m]."""

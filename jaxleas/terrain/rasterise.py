@@ -12,7 +12,7 @@ from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
 from jaxleas.terrain.polygons import VERTICAL_SLOPE, upwardness
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.sheets import raise_sheets
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 DEFAULT_RESOLUTION = 0.04
 CLOSING = 0.01

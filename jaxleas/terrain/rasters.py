@@ -18,7 +18,7 @@ from jaxleas.terrain.height_map import (
 from jaxleas.terrain.places import AUTO, FARTHEST
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.shaping import moved
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 

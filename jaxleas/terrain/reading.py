@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Literal
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 Up = Literal["x", "y", "z"]
 Rectangle = tuple[float, float, float, float]

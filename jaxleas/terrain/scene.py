@@ -20,7 +20,7 @@ from jaxleas.terrain.polygons import (
     require_convex_polygon,
     upwardness,
 )
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 VERSION = 1
 MAX_CORNERS = 10_000_000

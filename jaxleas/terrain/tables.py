@@ -17,7 +17,7 @@ from jaxleas.terrain.height_map import (
 )
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.text_numbers import without_mark
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MAX_TEXT = 2**28
 _NOTHING = ("", "nan", "na", "n/a", "null", "none", "-")

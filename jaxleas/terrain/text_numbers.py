@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _MARK = b"\xef\xbb\xbf"
 

@@ -5,9 +5,8 @@ from typing import Annotated, Generic, Literal, Self, TypeVar
 
 from pydantic import Field, model_validator
 
-from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive, Seed
-from jaxleas.configuration.strict import Strict
-from jaxleas.envs.environment import TaskConfig, WorldsConfig
+from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Seed, Strict
+from jaxleas.envs import TaskConfig, WorldsConfig
 
 
 class MapsConfig(Strict):
@@ -52,7 +51,7 @@ class NetworkConfig(Strict):
         """Number type in which this machine multiplies."""
         if self.products != "auto":
             return self.products
-        from jaxleas.xla.matrix_units import native_products  # asks JAX for its devices
+        from jaxleas.xla import native_products
 
         return native_products()
 

@@ -9,9 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from jaxleas.envs.environment import Examination, Task
-from jaxleas.envs.host_starts import HostPool
-from jaxleas.envs.starts import pool_of, take
+from jaxleas.envs import Examination, HostPool, Task, pool_of, take
 from jaxleas.training.config import RunConfig
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import normalise

@@ -12,8 +12,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.heads import Head
-from jaxleas.envs.signature import Signature
+from jaxleas.envs import Head, Signature
 from jaxleas.training.averages import Average
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.devices import AXIS, Devices
@@ -22,9 +21,7 @@ from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, normalise
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.training.train_state import TrainState, learning_rate
-from jaxleas.xla.adam import descend
-from jaxleas.xla.compute_once import compute_once
-from jaxleas.xla.gather import take_inside
+from jaxleas.xla import compute_once, descend, take_inside
 
 
 def make_learn(

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 import jax
 import numpy as np
 
-from jaxleas.runs.background import Background
-from jaxleas.runs.checkpoints import Checkpoints, NoCheckpointError
-from jaxleas.runs.folder import RunFolder
-from jaxleas.runs.interruption import Interruption
-from jaxleas.runs.metrics import MetricsLog
-from jaxleas.runs.progress import Progress
-from jaxleas.runs.watching import require_watchers
+from jaxleas.runs import (
+    Background,
+    Checkpoints,
+    Interruption,
+    MetricsLog,
+    NoCheckpointError,
+    Progress,
+    RunFolder,
+    require_watchers,
+)
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.policy import Policy, read_policy, write_policy

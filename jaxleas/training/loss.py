@@ -13,7 +13,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.heads.normal import NormalDistribution
+from jaxleas.envs import NormalDistribution
 from jaxleas.training.averages import ONE_DEVICE, Average
 from jaxleas.training.networks import ActorCritic
 

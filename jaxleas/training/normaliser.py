@@ -4,7 +4,7 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.envs.signature import Signature
+from jaxleas.envs import Signature
 from jaxleas.training.brax_blocks import running_statistics, specs
 from jaxleas.training.config import NetworkConfig
 

@@ -16,9 +16,7 @@ from jax import Array
 from jaxtyping import Float
 from pydantic import ValidationError
 
-from jaxleas.envs.environment import TaskConfig
-from jaxleas.envs.registry import DEFAULT_TASK, TASKS
-from jaxleas.envs.signature import Signature
+from jaxleas.envs import DEFAULT_TASK, TASKS, Signature, TaskConfig
 from jaxleas.files import parse_json, read_npz, write_npz
 from jaxleas.training.networks import ActorCritic, Network, network_described
 from jaxleas.training.normaliser import MAX_NORMALISED, Normaliser

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from jaxleas.envs.environment import Task
+from jaxleas.envs import Task
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices
 from jaxleas.training.learning import make_learn

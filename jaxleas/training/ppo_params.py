@@ -7,8 +7,8 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from jaxleas.configuration.values import value_of
-from jaxleas.envs.environment import TaskConfig
+from jaxleas.configuration import value_of
+from jaxleas.envs import TaskConfig
 from jaxleas.training.config import RunConfig
 
 # Fields of `ppo` that are numbers in the compiled program and change no shape in it.

@@ -4,11 +4,10 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
-from jaxleas.configuration.loading import Layers, layers_of, load_layers, validate
-from jaxleas.envs.environment import Task
-from jaxleas.envs.registry import DEFAULT_TASK, TASKS
+from jaxleas.configuration import Layers, layers_of, load_layers, validate
+from jaxleas.envs import DEFAULT_TASK, TASKS, Task
 from jaxleas.training.config import RunConfig
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 AnyRun = RunConfig[Any, Any]
 

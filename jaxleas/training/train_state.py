@@ -9,16 +9,13 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int, Key
 
-from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool
-from jaxleas.envs.signature import Signature
-from jaxleas.envs.starts import pool_of, take
+from jaxleas.envs import HostPool, Signature, Task, pool_of, take
 from jaxleas.training.config import PpoConfig, RunConfig
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, initial_normaliser
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.types import InputError
-from jaxleas.xla.adam import BETA_1, BETA_2, EPSILON
+from jaxleas.xla import BETA_1, BETA_2, EPSILON
 
 
 @struct.dataclass

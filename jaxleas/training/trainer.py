@@ -8,7 +8,7 @@ from typing import Any
 import jax
 from jax import Array
 
-from jaxleas.envs.environment import Task
+from jaxleas.envs import Task
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.examination import HostExaminer, make_examination

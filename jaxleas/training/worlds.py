@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from jaxleas.envs.environment import Task
-from jaxleas.terrain.seeds import HELD_OUT_SEED, MAX_TRAINING_SEED
+from jaxleas.envs import Task
+from jaxleas.terrain import HELD_OUT_SEED, MAX_TRAINING_SEED
 from jaxleas.training.config import RunConfig
 from jaxleas.types import InputError
 

@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.contacts.plan import ContactPlan, read_plan
-from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.problem_file import read_problem
-from jaxleas.guide.files import read_guide_paths
+from jaxleas.contacts import ContactPlan, ContactProblem, read_plan, read_problem
+from jaxleas.guide import read_guide_paths
 from jaxleas.types import GuidePath, InputError, RootPose
 from jaxleas.viewer.footholds import Foothold, footholds_of
 

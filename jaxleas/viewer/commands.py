@@ -5,14 +5,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jaxleas.terrain.reading import READING, Reading
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import READING, Reading
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from viser import ViserServer
 
     from jaxleas.robots import Robot
-    from jaxleas.terrain.height_map import HeightMap
+    from jaxleas.terrain import HeightMap
     from jaxleas.viewer.clips import Clip
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.show import Player
@@ -54,8 +54,7 @@ def view(
         browser: open a browser window, if there is a display.
         reading: what the file does not state itself.
     """
-    from jaxleas.terrain.importers import import_terrain
-    from jaxleas.terrain.scene import read_scene
+    from jaxleas.terrain import import_terrain, read_scene
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
@@ -189,14 +188,13 @@ def _drive(
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
 ) -> "Drive":
-    from jaxleas.envs.steering.env import SteeringEnv
-    from jaxleas.guide.loading import load_policy
-    from jaxleas.guide.starts import choose_start, require_start
-    from jaxleas.terrain.atlas import make_atlas
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide import choose_start, load_policy, require_start
+    from jaxleas.terrain import make_atlas
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.driven_robot import DrivenRobot
     from jaxleas.viewer.ground import look_near
-    from jaxleas.xla.compilation import keep_compiled_programs
+    from jaxleas.xla import keep_compiled_programs
 
     keep_compiled_programs()
     loaded = [load_policy(each) for each in policies]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap
 from jaxleas.types import RootPose
 from jaxleas.viewer.driven_robot import DrivenRobot
 from jaxleas.viewer.rider import Rider

@@ -8,12 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.geometry.rotations import wrap_angle_on_host
-from jaxleas.guide.leas import leas
-from jaxleas.guide.onnx_policy import OnnxPolicy
-from jaxleas.terrain.atlas import Atlas
-from jaxleas.training.policy import Policy
+from jaxleas.envs.steering import SteeringEnv
+from jaxleas.geometry import wrap_angle_on_host
+from jaxleas.guide import OnnxPolicy, leas
+from jaxleas.terrain import Atlas
+from jaxleas.training import Policy
 from jaxleas.types import RootMotion, RootPose
 
 State = Literal["waiting", "walking", "arrived", "invalid"]

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.stances import contact_pose
+from jaxleas.contacts import ContactPlan, ContactProblem, contact_pose
 from jaxleas.robots import Robot, load_robot
 from jaxleas.types import InputError, Pose
 

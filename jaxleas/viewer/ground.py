@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import HeightMap, Scene
 from jaxleas.types import is_ground
 from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_edges, mesh_of_map, mesh_of_polygons

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from viser import ViserServer

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from viser import ViserServer

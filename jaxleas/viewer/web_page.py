@@ -6,15 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.envs.steering.config import SteeringConfig
-from jaxleas.envs.steering.description import describe_steering
-from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.envs.steering.layout import layout_named
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv, describe_steering, layout_named
 from jaxleas.files import write_bytes, write_json
-from jaxleas.guide.onnx_policy import read_onnx_policy
-from jaxleas.guide.starts import choose_start, require_start
+from jaxleas.guide import choose_start, read_onnx_policy, require_start
 from jaxleas.robots import Robot
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError, RootPose
 from jaxleas.viewer.web_runtime import RUNTIME_FILES, runtime_folder
 

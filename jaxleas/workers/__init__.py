@@ -1,5 +1,5 @@
 """Tasks in this process, in other processes, or on Ray; a worker's death loses no task."""
 
-from jaxleas.workers.processes import Here, ProcessWorkers, WorkerError, Workers, workers_for
+import lazy_loader
 
-__all__ = ["Here", "ProcessWorkers", "WorkerError", "Workers", "workers_for"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkServerContext, SpawnContext
 from typing import Any, Protocol, TypeVar
 
-from jaxleas.types.errors import InputError, JaxleasError
+from jaxleas.types import InputError, JaxleasError
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import Any
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 from jaxleas.workers.processes import MOST_DEATHS, Answer, Task, WorkerError, require_count
 
 

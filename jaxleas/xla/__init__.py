@@ -1,1 +1,5 @@
 """Code written for the compiler, not for readers; each function has a plain twin."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -13,8 +13,8 @@ import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.constraints import StepConstraints, rotation
-from jaxleas.geometry.polytopes import Polytope
-from jaxleas.types.errors import InputError
+from jaxleas.geometry import Polytope
+from jaxleas.types import InputError
 
 DIRECTIONS = 96
 

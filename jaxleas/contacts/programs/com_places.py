@@ -12,7 +12,7 @@ from scipy import sparse
 
 from jaxleas.contacts.programs.constraints import StepConstraints
 from jaxleas.contacts.programs.linear_program import Program, solve
-from jaxleas.dynamics.small_lp import maximise
+from jaxleas.dynamics import maximise
 
 FITS = 1e-7
 """A place for the centre of mass may violate its constraints by this [m] (certificate: 1e-6)."""

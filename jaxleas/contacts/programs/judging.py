@@ -20,9 +20,8 @@ from jaxleas.contacts.programs.prefix import last_feasible_phase
 from jaxleas.contacts.programs.settings import ProgramSettings
 from jaxleas.contacts.reference import widest_reference
 from jaxleas.robots import load_robot
-from jaxleas.terrain.scene import Scene
-from jaxleas.types import GuidePath, Verdict
-from jaxleas.types.verdict import NO_MEASURES, Cause, PathProgress, PlannerMeasures
+from jaxleas.terrain import Scene
+from jaxleas.types import NO_MEASURES, Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
 
 Program = Callable[[ContactProblem, float], ContactPlan]
 """Plans a problem within a time limit [s], without looking for reasons."""

@@ -16,8 +16,7 @@ from jaxleas.contacts.programs.placement import Targets
 from jaxleas.contacts.programs.settings import Cost, MipPlanSettings, MipSettings
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.robots import load_robot
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 
 class Mip(Planner):

@@ -14,7 +14,7 @@ from jaxleas.contacts.programs.com_places import place_coms
 from jaxleas.contacts.programs.constraints import INITIAL, Link, StepConstraints, rotation
 from jaxleas.contacts.programs.least_distance import least_distance
 from jaxleas.contacts.programs.linear_program import Program, Rows, Solution, SolverStatus, solve
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MOST_MARGIN = 0.02
 """Greatest distance to spare that the program aims for [m]."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
-from jaxleas.configuration.strict import Strict
+from jaxleas.configuration import Strict
 from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
 from jaxleas.contacts.models import default_model_of, model_note
 from jaxleas.contacts.problem import Model

@@ -11,8 +11,7 @@ from jaxleas.contacts.programs.attempt import MAX_COMBINATIONS, Attempt, attempt
 from jaxleas.contacts.programs.judging import judge_by_program
 from jaxleas.contacts.programs.settings import Sl1mPlanSettings, Sl1mSettings
 from jaxleas.contacts.programs.slack_weights import SlackWeights
-from jaxleas.types import Verdict
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError, Verdict
 
 
 class Sl1m(Planner):

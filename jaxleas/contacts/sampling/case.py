@@ -10,12 +10,9 @@ from jaxleas.contacts.sampling.database import LegDatabases, leg_databases
 from jaxleas.contacts.sampling.ground import Ground, ground_of
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.contacts.sampling.stance import Stances
-from jaxleas.dynamics.contact_points import ContactPoints
-from jaxleas.dynamics.equilibrium import robustness_of
-from jaxleas.dynamics.equilibrium_bound import decide_robustness
-from jaxleas.robots import Robot
-from jaxleas.robots.legs import Legs, legs_of
-from jaxleas.terrain.scene import Scene
+from jaxleas.dynamics import ContactPoints, decide_robustness, robustness_of
+from jaxleas.robots import Legs, Robot, legs_of
+from jaxleas.terrain import Scene
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,8 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.dynamics.vectors import cross
-from jaxleas.robots import Robot
-from jaxleas.robots.chain import chain_jacobian
-from jaxleas.robots.legs import legs_of
-from jaxleas.robots.limb_model import LimbModel
+from jaxleas.dynamics import cross
+from jaxleas.robots import LimbModel, Robot, chain_jacobian, legs_of
 
 _TILTS = np.deg2rad([[0.0, 0.0], [12.0, 0.0], [-12.0, 0.0], [0.0, 12.0], [0.0, -12.0]])
 

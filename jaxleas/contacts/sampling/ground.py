@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.geometry.intersections import pack_polygons
-from jaxleas.terrain.polygons import polygon_area_vector
-from jaxleas.terrain.scene import Scene
-from jaxleas.types.errors import InputError
+from jaxleas.geometry import pack_polygons
+from jaxleas.terrain import Scene, polygon_area_vector
+from jaxleas.types import InputError
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from jaxleas.contacts.sampling.box_collision import Places, boxes_meet_ground
 from jaxleas.contacts.sampling.candidates import Aim
 from jaxleas.contacts.sampling.case import PlanningCase
 from jaxleas.contacts.sampling.roots import Roots, rotations_to_world, to_model, to_world
-from jaxleas.robots.legs import Legs
+from jaxleas.robots import Legs
 from jaxleas.types import GuidePath, InputError
 
 MOST_COORDINATE = 1e4  # a guide path further out is given in other units [m]

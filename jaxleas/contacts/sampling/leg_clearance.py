@@ -6,8 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.contacts.sampling.placed_legs import PlacedLegs
-from jaxleas.robots.legs import Legs
-from jaxleas.robots.limb_model import LimbModel
+from jaxleas.robots import Legs, LimbModel
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,7 @@ from jaxleas.contacts.sampling.roots import (
     to_model,
     to_world,
 )
-from jaxleas.robots.leg_kinds import ALL_DIRECTIONS
-from jaxleas.robots.legs import Legs
-from jaxleas.robots.limb_model import LimbModel
+from jaxleas.robots import ALL_DIRECTIONS, Legs, LimbModel
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from jaxleas.contacts.sampling.guides import require_usable
 from jaxleas.contacts.sampling.plan import SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.robots import Robot, load_robot
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath
 
 _ABREAST = 64  # guide paths followed together: more does not fit the cache

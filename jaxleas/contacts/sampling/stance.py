@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.contacts.sampling.ground import Ground
-from jaxleas.robots.legs import Legs
+from jaxleas.robots import Legs
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,8 +18,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.support import Sides, sides_of_hull, sides_of_polygon
-from jaxleas.dynamics.small_lp import maximise
-from jaxleas.robots.legs import Legs
+from jaxleas.dynamics import maximise
+from jaxleas.robots import Legs
 
 _TRIED = np.array([0.35, 0.5, 0.65, 0.8])  # heights tried before any linear program, as shares
 _START = 0.6  # height that a linear program starts from, likewise

@@ -9,7 +9,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int, Key
 
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import OnnxNodes
 
 
 @struct.dataclass

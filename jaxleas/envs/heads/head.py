@@ -5,7 +5,7 @@ from typing import Any, Protocol
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import OnnxNodes
 
 
 class Head(Protocol):

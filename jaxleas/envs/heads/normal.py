@@ -11,7 +11,7 @@ from jaxtyping import Float, Key
 
 from jaxleas.envs.heads.scales import Scale
 from jaxleas.envs.mirror import Mirror
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import OnnxNodes
 
 LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 MIN_DEVIATION = 1e-3  # as Brax has it

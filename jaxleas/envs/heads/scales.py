@@ -7,8 +7,8 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from jaxleas.geometry.rotations import bound_norm
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.geometry import bound_norm
+from jaxleas.types import OnnxNodes
 
 
 class Scale(Protocol):

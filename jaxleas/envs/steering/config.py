@@ -6,19 +6,15 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.conditions.named import STANDARD, NamedConditions
-from jaxleas.conditions.named import pinned as pinned_conditions
-from jaxleas.configuration.bounds import Count, Fraction, NonNegative, Positive
-from jaxleas.configuration.strict import Strict
-from jaxleas.envs.environment import TaskConfig, WorldsConfig
-from jaxleas.envs.heads import Ball, Interval, Normal
-from jaxleas.envs.mirror import Mirror
-from jaxleas.envs.signature import Part, Signature
+from jaxleas.conditions import STANDARD, NamedConditions
+from jaxleas.conditions import pinned as pinned_conditions
+from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
+from jaxleas.envs import Ball, Interval, Mirror, Normal, Part, Signature, TaskConfig, WorldsConfig
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN, layout_named
 from jaxleas.envs.steering.scaling import affine_scaling
-from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.own_files import Entry as TerrainEntry
-from jaxleas.terrain.own_files import pinned as pinned_files
+from jaxleas.terrain import Entry as TerrainEntry
+from jaxleas.terrain import GeneratorConfig
+from jaxleas.terrain import pinned as pinned_files
 
 
 class MotionLimits(Strict):

@@ -15,10 +15,10 @@ from jaxleas.conditions import (
     Pick,
     extended,
     footprint_points,
+    make_judges,
     read_from,
     with_points,
 )
-from jaxleas.conditions.catalogue import make_judges
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
@@ -33,9 +33,9 @@ from jaxleas.envs.steering.state import (
 )
 from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 from jaxleas.types import RootMotion
-from jaxleas.xla.compute_once import compute_once
+from jaxleas.xla import compute_once
 
 
 class SteeringEnv:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 MOTION_SIZE = 4  # velocity in the root frame (3) and the angle to the goal (1)
 

@@ -5,7 +5,7 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.config import MotionLimits
-from jaxleas.geometry.rotations import bound_norm, rotate_by_yaw, wrap_angle
+from jaxleas.geometry import bound_norm, rotate_by_yaw, wrap_angle
 from jaxleas.types import RootMotion
 
 

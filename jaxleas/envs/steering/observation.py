@@ -5,9 +5,9 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.layout import MOTION_SIZE
-from jaxleas.geometry.rotations import rotate_by_yaw, squared_length
+from jaxleas.geometry import rotate_by_yaw, squared_length
 from jaxleas.types import RootMotion
-from jaxleas.xla.angles import bearing
+from jaxleas.xla import bearing
 
 
 def direction_to_goal(

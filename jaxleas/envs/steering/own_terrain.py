@@ -16,8 +16,7 @@ from scipy.spatial import KDTree
 
 from jaxleas.conditions import Collision, StrictReachability, all_of, footprint_points
 from jaxleas.robots import Robot
-from jaxleas.terrain.atlas import make_atlas
-from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain import HeightMap, make_atlas
 from jaxleas.types import InputError, RootMotion, is_ground
 
 NEAREST, FARTHEST = 1.5, 6.0

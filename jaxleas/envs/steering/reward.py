@@ -9,9 +9,9 @@ from jax import Array
 from jaxtyping import Float
 
 from jaxleas.envs.steering.config import RewardWeights, SteeringConfig
-from jaxleas.geometry.rotations import squared_length
+from jaxleas.geometry import squared_length
 from jaxleas.types import RootMotion
-from jaxleas.xla.angles import sine_cosine
+from jaxleas.xla import sine_cosine
 
 
 @struct.dataclass

@@ -5,7 +5,7 @@ from jax import Array
 from jaxtyping import Float, Int
 
 from jaxleas.robots import Robot
-from jaxleas.terrain.atlas import Atlas
+from jaxleas.terrain import Atlas
 from jaxleas.types import is_ground
 
 

@@ -7,8 +7,7 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.envs.environment import Starts
-from jaxleas.envs.starts import pool_of, take
+from jaxleas.envs import Starts, pool_of, take
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import OwnStarts, draw_own_starts
 from jaxleas.envs.steering.standing import standing_position

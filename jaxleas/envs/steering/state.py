@@ -6,7 +6,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Float, Int
 
-from jaxleas.envs.environment import StepResult
+from jaxleas.envs import StepResult
 from jaxleas.types import RootMotion
 
 GOALS = 4  # goals drawn ahead for an episode: more than its steps can use up

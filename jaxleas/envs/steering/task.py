@@ -8,7 +8,7 @@ from jax import Array
 from jaxtyping import Float, Key
 
 from jaxleas.conditions import Condition, Foresight
-from jaxleas.envs.environment import Examination, Starts, Task
+from jaxleas.envs import Examination, Starts, Task
 from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import make_own_terrain
@@ -16,8 +16,7 @@ from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts
 from jaxleas.envs.steering.state import SteeringResult, SteeringState
 from jaxleas.envs.steering.world import KINDS, OwnMaps, World, make_world
-from jaxleas.terrain.generator import generate_arena
-from jaxleas.terrain.own_files import read_own_terrain
+from jaxleas.terrain import generate_arena, read_own_terrain
 
 NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
 

@@ -13,12 +13,8 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.envs.steering.config import LinkShares
 from jaxleas.envs.steering.own_terrain import OwnTerrain, make_own_terrain
 from jaxleas.robots import Robot
-from jaxleas.terrain.atlas import Atlas, make_atlas
-from jaxleas.terrain.generator import Arena
-from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.links import Link
-from jaxleas.terrain.rasterise import rasterise
-from jaxleas.types.errors import InputError
+from jaxleas.terrain import Arena, Atlas, HeightMap, Link, make_atlas, rasterise
+from jaxleas.types import InputError
 
 DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
 KINDS = tuple(LinkShares.model_fields)

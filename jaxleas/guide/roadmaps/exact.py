@@ -10,9 +10,7 @@ from jaxtyping import Bool
 from jaxleas.conditions import exact_collision, exact_strict_reachability
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
-from jaxleas.terrain.mesh_scene import has_polygons, load_scene
-from jaxleas.terrain.reading import READING, Reading
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import READING, Reading, Scene, has_polygons, load_scene
 from jaxleas.types import GuidePath, InputError, RootMotion
 
 NEAR = 0.1 * np.arange(1, 11)

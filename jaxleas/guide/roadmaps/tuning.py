@@ -10,7 +10,7 @@ from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.exact import refusals
 from jaxleas.guide.roadmaps.navigation import Navigator, PlannerName
 from jaxleas.guide.steering_method import SteeringMethod
-from jaxleas.terrain.scene import Scene
+from jaxleas.terrain import Scene
 
 
 def make_navigator(

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 
 from jaxleas.runs.watching.watcher import Watcher
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 # Name -> (required client, module here, class). Each is imported only on request: the clients take
 # seconds.

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from jaxleas.files import read_json, write_json
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 
 def lasting_identity(path: Path, make: Callable[[], str]) -> str:

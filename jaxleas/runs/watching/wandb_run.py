@@ -8,7 +8,7 @@ from uuid import uuid4
 
 from jaxleas.runs.watching.identity import lasting_identity
 from jaxleas.runs.watching.watcher import Status
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 PROJECT = "jaxleas"
 """Name of the project if WANDB_PROJECT is not set."""

@@ -16,7 +16,7 @@ import numpy as np
 from jaxleas.files import read_npz, require_file
 from jaxleas.terrain.foreign.answers import LACKS, REFUSED
 from jaxleas.terrain.foreign.limits import CPU_SECONDS, MAX_ANSWER, MEMORY
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
 MAX_BYTES = 2**30  # of a file that is read

@@ -17,7 +17,7 @@ from jaxleas.terrain.scenarios.transitions import (
     transition,
 )
 from jaxleas.terrain.scene import Scene
-from jaxleas.types.errors import InputError
+from jaxleas.types import InputError
 
 SCENARIOS: Mapping[str, Callable[[int], Scenario]] = MappingProxyType(
     {

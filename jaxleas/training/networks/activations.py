@@ -3,8 +3,7 @@
 from typing import Literal
 
 from jaxleas.training.brax_blocks import ACTIVATION
-from jaxleas.types.errors import InputError
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import InputError, OnnxNodes
 
 Activation = Literal["relu", "tanh", "swish", "elu"]
 ACTIVATIONS = {name: ACTIVATION[name] for name in ("relu", "tanh", "swish", "elu")}

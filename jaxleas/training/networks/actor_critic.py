@@ -6,7 +6,7 @@ from typing import Any
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.envs.signature import Signature
+from jaxleas.envs import Signature
 from jaxleas.training.brax_blocks import PPONetworkParams
 from jaxleas.training.config import NetworkConfig
 from jaxleas.training.networks.making import make_network

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.envs.signature import Part
+from jaxleas.envs import Part
 from jaxleas.training.config import NetworkConfig
 from jaxleas.training.networks.activations import ACTIVATIONS
 from jaxleas.training.networks.map_encoder import MapEncoder

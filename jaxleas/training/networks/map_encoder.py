@@ -14,11 +14,11 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.envs.signature import Part
+from jaxleas.envs import Part
 from jaxleas.training.brax_blocks import ACTIVATION
 from jaxleas.training.networks.activations import onnx_activation
 from jaxleas.training.networks.mlp import Mlp, array_of_shape, layers_of, params_of
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import OnnxNodes
 
 STRIDE = 2
 

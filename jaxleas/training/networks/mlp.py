@@ -11,8 +11,8 @@ from jaxtyping import Float, Key
 
 from jaxleas.training.brax_blocks import ACTIVATION, MLP
 from jaxleas.training.networks.activations import onnx_activation
-from jaxleas.types.onnx_nodes import OnnxNodes
-from jaxleas.xla.dense import dense, plain_dense
+from jaxleas.types import OnnxNodes
+from jaxleas.xla import dense, plain_dense
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Key
 
-from jaxleas.types.onnx_nodes import OnnxNodes
+from jaxleas.types import OnnxNodes
 
 
 class Network(Protocol):

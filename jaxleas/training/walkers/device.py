@@ -6,8 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from jaxleas.envs.environment import Task
-from jaxleas.envs.starts import draw_picks, pool_of, restart_where
+from jaxleas.envs import Task, draw_picks, pool_of, restart_where
 from jaxleas.training.config import RunConfig
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import ActorCritic

@@ -9,8 +9,7 @@ import jax
 import numpy as np
 from jax import Array
 
-from jaxleas.envs.environment import Task
-from jaxleas.envs.host_starts import HostPool
+from jaxleas.envs import HostPool, Task
 from jaxleas.training.config import RunConfig
 from jaxleas.training.loss import Experience
 from jaxleas.training.networks import ActorCritic

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.evaluation.examination import POLICY, Candidate
-from jaxleas.evaluation.report_basis import ReportBasis
-from jaxleas.evaluation.result_file import CellResult, Evaluation
+from jaxleas.evaluation import POLICY, Candidate, CellResult, Evaluation, ReportBasis
 from jaxleas.files import read_json, write_bytes, write_text
-from jaxleas.guide.registry import BASELINES, is_policy
+from jaxleas.guide import BASELINES, is_policy
 from jaxleas.reports.gallery import Picture, draw_gallery
 from jaxleas.reports.learning_curves import draw_learning_curves
 from jaxleas.reports.page import page_template
@@ -24,7 +22,7 @@ from jaxleas.reports.table import (
     percent,
     rows,
 )
-from jaxleas.runs.metrics import read_metrics
+from jaxleas.runs import read_metrics
 from jaxleas.types import InputError
 
 TEMPLATE = "report.html"

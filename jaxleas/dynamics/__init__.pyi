@@ -1,0 +1,9 @@
+from .contact_points import ContactPoints as ContactPoints
+from .equilibrium import GRAVITY as GRAVITY
+from .equilibrium import equilibrium_robustness as equilibrium_robustness
+from .equilibrium import robustness_of as robustness_of
+from .equilibrium_bound import decide_robustness as decide_robustness
+from .exact_cone import exact_robustness as exact_robustness
+from .friction import friction_generators as friction_generators
+from .small_lp import maximise as maximise
+from .vectors import cross as cross

@@ -1,0 +1,10 @@
+from .commands import export as export
+from .errors import ExportError as ExportError
+from .onnx_file import build_onnx as build_onnx
+from .parity import TOLERANCE as TOLERANCE
+from .parity import largest_difference as largest_difference
+from .recording import record_observations as record_observations
+from .stablehlo import read_stablehlo as read_stablehlo
+from .stablehlo import to_stablehlo as to_stablehlo
+from .write import described as described
+from .write import export_policy as export_policy

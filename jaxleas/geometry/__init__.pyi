@@ -1,0 +1,12 @@
+from .boxes import Box as Box
+from .clipping import clip_polygon as clip_polygon
+from .intersections import pack_polygons as pack_polygons
+from .intersections import polygons_meet_polytope as polygons_meet_polytope
+from .polytopes import Polytope as Polytope
+from .rotations import bound_norm as bound_norm
+from .rotations import rotate_by_yaw as rotate_by_yaw
+from .rotations import rotate_to_root as rotate_to_root
+from .rotations import rotate_to_world as rotate_to_world
+from .rotations import squared_length as squared_length
+from .rotations import wrap_angle as wrap_angle
+from .rotations import wrap_angle_on_host as wrap_angle_on_host

@@ -1,0 +1,28 @@
+"""What a planner of one's own needs, from the rooms where it is defined."""
+
+from jaxleas.contacts import (
+    AskedGuides,
+    MipSettings,
+    Outcome,
+    OwnPlanner,
+    PlannerAnswer,
+    PlannerSettings,
+    Sl1mSettings,
+)
+from jaxleas.types import Verdict
+from jaxleas.workers import Here, ProcessWorkers, WorkerError, Workers
+
+__all__ = [
+    "AskedGuides",
+    "Here",
+    "MipSettings",
+    "Outcome",
+    "OwnPlanner",
+    "PlannerAnswer",
+    "PlannerSettings",
+    "ProcessWorkers",
+    "Sl1mSettings",
+    "Verdict",
+    "WorkerError",
+    "Workers",
+]

@@ -1,0 +1,17 @@
+from .commands import evaluate as evaluate
+from .commands import report as report
+from .figure_pictures import draw_figures as draw_figures
+from .learning_curves import COLOURS as COLOURS
+from .learning_curves import DPI as DPI
+from .learning_curves import series as series
+from .page import page_template as page_template
+from .published import printed_planners as printed_planners
+from .published import thesis as thesis
+from .risk_dial import draw_dial as draw_dial
+from .run_report import inline as inline
+from .run_report import write_report as write_report
+from .side_by_side import headings as headings
+from .side_by_side import rows as rows
+from .table import align as align
+from .table import percent as percent
+from .thesis_tables import thesis_tables as thesis_tables

@@ -1,0 +1,11 @@
+from .background import Background as Background
+from .checkpoints import Checkpoints as Checkpoints
+from .checkpoints import NoCheckpointError as NoCheckpointError
+from .folder import RunFolder as RunFolder
+from .folder import policy_file as policy_file
+from .interruption import Interruption as Interruption
+from .metrics import MetricsLog as MetricsLog
+from .metrics import read_metrics as read_metrics
+from .progress import Progress as Progress
+from .swallowed import interrupts_kept as interrupts_kept
+from .watching.catalogue import require_watchers as require_watchers

@@ -1,0 +1,16 @@
+from .fit import fit as fit
+from .fit import foreseen_failure as foreseen_failure
+from .fit import split_by_terrain as split_by_terrain
+from .foresight import SurrogateForesight as SurrogateForesight
+from .label_files import Labels as Labels
+from .label_files import read_labels as read_labels
+from .network import initial_weights as initial_weights
+from .settings import FitSettings as FitSettings
+from .surrogate import Identity as Identity
+from .surrogate import Surrogate as Surrogate
+from .surrogate_file import read_surrogate as read_surrogate
+from .surrogate_file import require_fit as require_fit
+from .surrogate_file import write_surrogate as write_surrogate
+from .walks import LabelledWalks as LabelledWalks
+from .walks import join as join
+from .walks import label_walks as label_walks

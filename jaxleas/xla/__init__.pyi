@@ -1,0 +1,15 @@
+from .adam import BETA_1 as BETA_1
+from .adam import BETA_2 as BETA_2
+from .adam import EPSILON as EPSILON
+from .adam import descend as descend
+from .angles import bearing as bearing
+from .angles import sine_cosine as sine_cosine
+from .compilation import keep_compiled_programs as keep_compiled_programs
+from .compute_once import compute_once as compute_once
+from .dense import dense as dense
+from .dense import plain_dense as plain_dense
+from .gather import take_along_inside as take_along_inside
+from .gather import take_inside as take_inside
+from .huge_pages import hold_in_huge_pages as hold_in_huge_pages
+from .matrix_units import native_products as native_products
+from .split import split as split
