@@ -9,8 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 COINCIDENT = 1e-6
 """Faces at an edge lie on each other if 1 - cosine of the angle between them is below this."""
@@ -174,6 +172,9 @@ def _alike(
         pairs: sides across which two faces go on.
         area: areas of the faces.
     """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     count = len(area)
     one, two = pairs.T // 3
     against = edges.ahead[pairs[:, 0]] == edges.ahead[pairs[:, 1]]

@@ -1,12 +1,16 @@
 """The part of a scene in a rectangle."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from jaxleas.geometry import Polytope, clip_polygon
 from jaxleas.terrain.polygons import MIN_AREA, polygon_area_vector
 from jaxleas.terrain.reading import Rectangle
 from jaxleas.terrain.scene import Polygons, Scene, Touch
 from jaxleas.types import InputError
+
+if TYPE_CHECKING:
+    from jaxleas.geometry import Polytope
 
 
 def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
@@ -15,6 +19,8 @@ def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
     Raises:
         InputError: no surface is left.
     """
+    from jaxleas.geometry import Polytope  # here, as it loads SciPy
+
     x_min, x_max, y_min, y_max = crop
     sides = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
     inside = Polytope(sides, np.array([-x_min, x_max, -y_min, y_max]))
@@ -25,7 +31,9 @@ def cropped_scene(scene: Scene, crop: Rectangle, where: str) -> Scene:
     return Scene(surfaces, obstacles, scene.areas, touch)
 
 
-def _cut(polygons: Polygons, inside: Polytope) -> Polygons:
+def _cut(polygons: Polygons, inside: "Polytope") -> Polygons:
+    from jaxleas.geometry import clip_polygon
+
     cut = {name: clip_polygon(vertices, inside) for name, vertices in polygons.items()}
     return {
         name: vertices

@@ -7,8 +7,8 @@ from typing import cast
 
 import numpy as np
 from jaxtyping import Float
-from scipy.ndimage import label, maximum_filter
 
+from jaxleas.terrain.areas import area_vectors
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.polygons import VERTICAL_SLOPE
 from jaxleas.terrain.rasterise import covered_cells
@@ -76,6 +76,8 @@ def say_losses(path: str | Path, found: Losses, resolution: float) -> None:
 
 def _thin(points: Float[np.ndarray, "P 3"], height_map: HeightMap) -> tuple[int, float]:
     """Return number and height of the places where corners lie above all cells around them."""
+    from scipy.ndimage import label, maximum_filter
+
     ground = np.where(is_ground(height_map.heights), height_map.heights, -np.inf)
     around = maximum_filter(ground, size=3)
     row, column, inside = _cells(points, height_map)
@@ -94,8 +96,7 @@ def _thin(points: Float[np.ndarray, "P 3"], height_map: HeightMap) -> tuple[int,
 
 def _covered(corners: Float[np.ndarray, "N V 3"], height_map: HeightMap) -> tuple[float, float]:
     """Return area and height of free space between faces that look up and down over them."""
-    edges = np.roll(corners, -1, axis=1) - corners[:, :1]
-    area = 0.5 * np.cross(corners - corners[:, :1], edges).sum(axis=1)
+    area = area_vectors(corners)
     upward = area[:, 2] / np.maximum(np.linalg.norm(area, axis=1), 1e-300)
     down, up = corners[upward < -VERTICAL_SLOPE], corners[upward > VERTICAL_SLOPE]
     if not (len(down) and len(up)):

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.terrain.areas import area_vectors, bounds
 from jaxleas.terrain.mesh_files import Triangles
 from jaxleas.terrain.mesh_formats import MESHES
 from jaxleas.terrain.places import require_near, shift_of
@@ -42,25 +43,29 @@ def read_triangles(path: str | Path, reading: Reading = READING) -> Float[np.nda
         raise InputError(f"scale {scale:g} must be a positive number of metres per unit")
     found = form.read(Path(path))
     with np.errstate(over="ignore", invalid="ignore"):  # refused below
-        triangles = _upright(found, up or found.up) * scale
+        triangles = _upright(found, up or found.up)
+        if scale != 1.0:
+            triangles = triangles * scale
     if not len(triangles):
         raise InputError(f"{path} has no triangles: is it a mesh with faces?")
     if not np.isfinite(triangles).all():
         raise InputError(f"{path} has a vertex that is not a finite number")
     _require_fine(path, found, scale)
-    low = triangles.min(axis=(0, 1))
-    triangles = triangles - shift_of(path, reading.origin, (float(low[0]), float(low[1])))
+    low, _ = bounds(triangles)
+    shift = shift_of(path, reading.origin, (float(low[0]), float(low[1])))
+    if shift.any():
+        triangles = triangles - shift
     if reading.crop is not None:
         triangles = _near(path, triangles, require_rectangle(reading.crop))
     triangles = _terrain_only(path, triangles)
-    require_near(path, triangles)
+    require_near(path, np.array(bounds(triangles)))
     return triangles
 
 
 def _upright(found: Triangles, up: Up) -> Float[np.ndarray, "N 3 3"]:
     if found.gltf and up == "y":
         return found.corners[..., (0, 2, 1)] * [1.0, -1.0, 1.0]
-    return found.corners[..., AXES[up]]
+    return found.corners if up == "z" else found.corners[..., AXES[up]]
 
 
 def _near(
@@ -94,18 +99,18 @@ def _require_fine(path: str | Path, found: Triangles, scale: float) -> None:
 def _terrain_only(
     path: str | Path, triangles: Float[np.ndarray, "N 3 3"]
 ) -> Float[np.ndarray, "N 3 3"]:
-    spans = np.ptp(triangles.reshape(-1, 3)[:, :2], axis=0)
+    low, high = bounds(triangles)
+    spans = (high - low)[:2]
     if spans.max() < MIN_EXTENT or spans.max() > MAX_EXTENT:
         raise InputError(
             f"{path} spans {spans[0]:.4g} x {spans[1]:.4g} m; a terrain is {MIN_EXTENT:g} to "
             f"{MAX_EXTENT:g} m wide; are its units metres (see scale)?"
         )
-    edges = triangles[:, 1:] - triangles[:, :1]
-    area = 0.5 * np.cross(edges[:, 0], edges[:, 1])
+    area = area_vectors(triangles)
     size = np.linalg.norm(area, axis=1)
     proper = size > 1e-12
     if not proper.any():
         raise InputError(f"{path} is degenerate: every triangle has zero area")
     if not (np.abs(area[proper, 2]) > 1e-3 * size[proper]).any():
         raise InputError(f"{path} is not a terrain: it has only vertical faces; is up right?")
-    return triangles[proper]
+    return triangles if proper.all() else triangles[proper]

@@ -1,21 +1,30 @@
-"""OBJ files as triangles: vertices and faces, read from untrusted files."""
+"""OBJ files as triangles: vertices and faces, read from untrusted files.
+
+Long runs of lines of one kind are read as arrays; what is not plain numbers there, and all other
+lines, are read one by one.
+"""
 
 import re
+import warnings
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from jaxleas.terrain.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import lines_of, shown, vectors
 from jaxleas.types import InputError
 
-_BATCH = 100_000  # faces parsed at a time, to save memory
+Broken = Callable[[str], InputError]
+LONG = 100
+"""Number of lines of one kind that are read as an array."""
+_BATCH = 100_000  # lines parsed at a time, to save memory
 _AFTER_SLASH = re.compile(rb"/\S*")  # texture and normal of a corner
+_OTHER, _VERTEX, _FACE = 0, 1, 2
 
 
 def read_obj(
-    content: bytes, broken: Callable[[str], InputError], require_few: Callable[[int], None]
+    content: bytes, broken: Broken, require_few: Callable[[int], None]
 ) -> Float[np.ndarray, "N 3 3"]:
     """Return the triangles of an OBJ file, in the file's units.
 
@@ -26,52 +35,119 @@ def read_obj(
         broken: makes the error of a reason why the file cannot be read.
         require_few: refuses a number of triangles that is too large.
     """
-    content = re.sub(rb"\\[ \t]*\r?\n", b" ", content)
-    vertices: list[bytes] = []
-    faces: list[bytes] = []
-    known: list[int] = []  # vertices before each face: negative numbers count from there
-    for line in lines_of(content):
-        if line[:2] in (b"v ", b"v\t"):
-            vertices.append(line[2:])
-        elif line[:2] in (b"f ", b"f\t"):
-            faces.append(line[2:])
-            known.append(len(vertices))
-    points = vectors(vertices, broken)
-    parts = list(_parsed(faces, known, broken))
-    counts = np.concatenate([count for count, _ in parts]) if parts else np.zeros(0, np.int64)
-    require_few(int((counts - 2).sum()))
-    corners = np.concatenate([corner for _, corner in parts]) if parts else np.zeros(0, np.int64)
-    return points[triangulate(points, corners, counts, broken)]
+    points: list[np.ndarray] = []
+    counts: list[np.ndarray] = []
+    corners: list[np.ndarray] = []
+    known = 0  # vertices so far: negative numbers count back from there
+    for kind, count, text in _runs(_tidy(content)):
+        if kind == _VERTEX:
+            found = _plain_numbers(text, count, b"v") if count >= LONG else None
+            if found is None or (found[0] != 3).any():
+                points.append(vectors([line[2:] for line in lines_of(text)], broken))
+            else:
+                points.append(found[1].reshape(-1, 3))
+            known += count
+        else:
+            number, indices = _face_corners(text, count, known, broken)
+            counts.append(number)
+            corners.append(indices)
+    if not counts:
+        return np.zeros((0, 3, 3))
+    all_counts = np.concatenate(counts)
+    require_few(int((all_counts - 2).sum()))
+    vertices = np.concatenate(points)
+    return vertices[triangulate(vertices, np.concatenate(corners), all_counts, broken)]
 
 
-def _parsed(
-    faces: list[bytes], known: list[int], broken: Callable[[str], InputError]
-) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield numbers of corners and indices of vertices, counted from 0, of some faces at a time."""
-    for start in range(0, len(faces), _BATCH):
-        some = faces[start : start + _BATCH]
-        words = [_AFTER_SLASH.sub(b"", face).split() for face in some]
-        counts = np.array([len(each) for each in words])
-        odd = (counts < 3) | (counts > MAX_POLYGON)
-        if odd.any():
-            raise broken(f"a face has {counts[np.argmax(odd)]} corners")
-        try:
-            flat = [int(word) for each in words for word in each]
-            numbers = np.array(flat, dtype=np.int64)
-        except (ValueError, OverflowError) as error:
-            raise broken(f"{_shown_unreadable(some, words)} is no face") from error
-        before = np.repeat(np.array(known[start : start + _BATCH]), counts)
-        # A corner 0 is invalid, and so becomes a negative index.
-        indices = np.where(numbers > 0, numbers - 1, np.where(numbers < 0, before + numbers, -1))
-        outside = (indices < 0) | (indices >= before)
-        if outside.any():
-            face = np.searchsorted(np.cumsum(counts), np.argmax(outside), side="right")
-            raise broken(f"the face {shown(some[face])} has a corner that is no vertex before it")
-        yield counts, indices
+def _tidy(content: bytes) -> bytes:
+    """Return the same lines, each ended by one line feed, not indented, and not continued."""
+    if b"\\" in content:
+        content = re.sub(rb"\\[ \t]*\r?\n", b" ", content)
+    if b"\r" in content:
+        content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if re.search(rb"(?m)^[ \t\v\f]", content):
+        content = re.sub(rb"(?m)^[ \t\v\f]+", b"", content)
+    return content if content.endswith(b"\n") else content + b"\n"
 
 
-def _shown_unreadable(faces: list[bytes], words: list[list[bytes]]) -> str:
+def _runs(content: bytes) -> Iterator[tuple[int, int, bytes]]:
+    """Yield kind, number of lines and text of successive lines of vertices or of faces."""
+    letters = np.frombuffer(content, np.uint8)
+    ends = np.flatnonzero(letters == ord("\n"))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    first, second = letters[starts], letters[np.minimum(starts + 1, len(letters) - 1)]
+    spaced = (second == ord(" ")) | (second == ord("\t"))
+    kind = np.where(spaced & (first == ord("v")), _VERTEX, _OTHER)
+    kind = np.where(spaced & (first == ord("f")), _FACE, kind)
+    changes = np.concatenate([[0], np.flatnonzero(np.diff(kind)) + 1, [len(kind)]])
+    for begin, end in zip(changes[:-1].tolist(), changes[1:].tolist(), strict=True):
+        if kind[begin] == _OTHER:
+            continue
+        for at in range(begin, end, _BATCH):
+            last = min(at + _BATCH, end)
+            yield int(kind[begin]), last - at, content[starts[at] : ends[last - 1] + 1]
+
+
+def _face_corners(
+    text: bytes, count: int, known: int, broken: Broken
+) -> tuple[Int[np.ndarray, " F"], Int[np.ndarray, " C"]]:
+    """Return the numbers of corners of faces, and the indices of their vertices from 0."""
+    found = _plain_faces(text, count) if count >= LONG else None
+    if found is None:
+        found = _words_of_faces([line[2:] for line in lines_of(text)], broken)
+    counts, numbers = found
+    # A corner 0 is invalid, and so becomes a negative index.
+    indices = np.where(numbers > 0, numbers - 1, np.where(numbers < 0, known + numbers, -1))
+    outside = (indices < 0) | (indices >= known)
+    if outside.any():
+        face = int(np.searchsorted(np.cumsum(counts), np.argmax(outside), side="right"))
+        line = text.splitlines()[face][2:]
+        raise broken(f"the face {shown(line)} has a corner that is no vertex before it")
+    return counts, indices
+
+
+def _plain_faces(
+    text: bytes, count: int
+) -> tuple[Int[np.ndarray, " F"], Int[np.ndarray, " C"]] | None:
+    found = _plain_numbers(_AFTER_SLASH.sub(b"", text) if b"/" in text else text, count, b"f")
+    if found is None:
+        return None
+    counts, numbers = found
+    whole = (np.abs(numbers) < 2**53).all() and (numbers == np.trunc(numbers)).all()
+    if not whole or ((counts < 3) | (counts > MAX_POLYGON)).any():
+        return None
+    return counts, numbers.astype(np.int64)
+
+
+def _words_of_faces(
+    faces: list[bytes], broken: Broken
+) -> tuple[Int[np.ndarray, " F"], Int[np.ndarray, " C"]]:
+    words = [[word.split(b"/", 1)[0] for word in face.split()] for face in faces]
+    counts = np.array([len(each) for each in words])
+    odd = (counts < 3) | (counts > MAX_POLYGON)
+    if odd.any():
+        raise broken(f"a face has {counts[np.argmax(odd)]} corners")
     for face, each in zip(faces, words, strict=True):
         if not all(re.fullmatch(rb"[+-]?\d{1,18}", word) for word in each):
-            return shown(face)
-    return shown(faces[0])
+            raise broken(f"{shown(face)} is no face")
+    return counts, np.array([int(word) for each in words for word in each], dtype=np.int64)
+
+
+def _plain_numbers(
+    text: bytes, lines: int, letter: bytes
+) -> tuple[Int[np.ndarray, " L"], Float[np.ndarray, " K"]] | None:
+    """Return how many numbers each line has after its letter, and all numbers; None: not plain."""
+    text = text.translate(None, letter)
+    letters = np.frombuffer(text, np.uint8)
+    blank = letters <= ord(" ")
+    begins = np.flatnonzero(~blank & np.concatenate([[True], blank[:-1]]))
+    line = np.searchsorted(np.flatnonzero(letters == ord("\n")), begins)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that it stopped at a word: then some are missing
+        try:
+            numbers = np.fromstring(text, np.float64, sep=" ")
+        except ValueError:
+            return None
+    if len(numbers) != len(begins):
+        return None
+    return np.bincount(line, minlength=lines), numbers

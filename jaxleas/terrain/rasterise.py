@@ -1,11 +1,13 @@
 """Polygons to height maps: each cell centre has the height of the highest polygon over it."""
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.terrain.areas import bounds
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
 from jaxleas.terrain.polygons import VERTICAL_SLOPE, upwardness
 from jaxleas.terrain.scene import Scene
@@ -71,8 +73,9 @@ def rasterise_polygons(
     """
     require_resolution(resolution, where)
     padded = padded_polygons(polygons)
-    low = np.floor((padded[..., :2].min(axis=(0, 1)) - margin) / resolution)
-    high = np.ceil((padded[..., :2].max(axis=(0, 1)) + margin) / resolution)
+    lowest, highest = bounds(padded)
+    low = np.floor((lowest[:2] - margin) / resolution)
+    high = np.ceil((highest[:2] + margin) / resolution)
     columns, rows = (high - low).tolist()
     if not rows * columns <= MAX_CELLS:
         raise InputError(
@@ -143,6 +146,7 @@ def _planes(
     level = np.abs(area[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(area, axis=1)
     polygons, following, area = polygons[level], following[level], area[level]
     cells = (polygons[..., :2] - origin) / resolution
+    corners = [cells[:, corner] for corner in range(cells.shape[1])]
     edge = (following[..., :2] - polygons[..., :2]) * np.sign(area[:, 2])[:, None, None]
     length = np.linalg.norm(edge, axis=-1, keepdims=True)
     outward = np.stack([edge[..., 1], -edge[..., 0]], axis=-1)
@@ -157,8 +161,8 @@ def _planes(
         offset=(normal * cells).sum(axis=-1) + reach,
         slope=slope,
         height=anchor[:, 2] - (slope * anchor_cell).sum(axis=-1),
-        first=np.ceil(cells.min(axis=1) - reach).astype(np.int64),
-        last=np.floor(cells.max(axis=1) + reach).astype(np.int64),
+        first=np.ceil(reduce(np.minimum, corners) - reach).astype(np.int64),
+        last=np.floor(reduce(np.maximum, corners) + reach).astype(np.int64),
     )
 
 

@@ -4,7 +4,6 @@ import logging
 from pathlib import Path
 
 import numpy as np
-from scipy.ndimage import map_coordinates
 
 from jaxleas.terrain.foreign.asking import ask
 from jaxleas.terrain.height_map import (
@@ -118,6 +117,8 @@ def _part(found: HeightMap, reading: Reading) -> HeightMap:
 
 
 def _resampled(path: Path, found: HeightMap, cell: float) -> HeightMap:
+    from scipy.ndimage import map_coordinates
+
     size = np.array(found.shape) - 1
     count = np.floor(size * found.resolution / cell + 1e-9).astype(int) + 1
     if float(count[0]) * float(count[1]) > MAX_CELLS:

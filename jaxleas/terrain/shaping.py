@@ -7,7 +7,6 @@ from typing import cast
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.ndimage import distance_transform_edt, find_objects, gaussian_filter, label
 
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.places import require_near, shift_of
@@ -92,6 +91,8 @@ def holes(
     A hole is void with ground all around it; void that reaches the rim of the map is none.
     Entry 0 of the second array is False: it is the ground.
     """
+    from scipy.ndimage import label
+
     region, count = cast(tuple[np.ndarray, int], label(~is_ground(heights)))
     inside = np.ones(count + 1, bool)
     rim = np.concatenate([region[0], region[-1], region[:, 0], region[:, -1]])
@@ -101,6 +102,8 @@ def holes(
 
 def filled(path: str | Path, height_map: HeightMap, widest: float) -> HeightMap:
     """Return a map without holes up to a width: their heights are averaged from their rims."""
+    from scipy.ndimage import distance_transform_edt, find_objects
+
     heights = height_map.heights
     region, inside = holes(heights)
     small = np.zeros(len(inside), bool)
@@ -130,6 +133,8 @@ def filled(path: str | Path, height_map: HeightMap, widest: float) -> HeightMap:
 
 def smoothed(path: str | Path, height_map: HeightMap, deviation: float) -> HeightMap:
     """Return a map averaged with a Gaussian; void stays void and does not count."""
+    from scipy.ndimage import gaussian_filter
+
     ground = is_ground(height_map.heights)
     cells = deviation / height_map.resolution
     weight = gaussian_filter(ground.astype(np.float64), cells, mode="constant", truncate=3.0)

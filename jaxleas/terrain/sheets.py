@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.ndimage import maximum_filter
 
+from jaxleas.terrain.areas import area_vectors
 from jaxleas.terrain.polygons import VERTICAL_SLOPE
 
 HELD = 5e-3
@@ -22,9 +22,7 @@ _CROSSINGS = 2_000_000  # of edges and sides of cells at a time, to save memory
 
 def is_level(polygons: Float[np.ndarray, "N V 3"]) -> Bool[np.ndarray, " N"]:
     """Return which polygons have a height above the points of the plane: all but vertical ones."""
-    following = np.roll(polygons, -1, axis=1)
-    centre = polygons.mean(axis=1, keepdims=True)
-    area = 0.5 * np.cross(polygons - centre, following - centre).sum(axis=1)
+    area = area_vectors(polygons)
     return np.abs(area[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(area, axis=1)
 
 
@@ -84,6 +82,8 @@ def _above(
     These are the height of the edge there, that of the cells beside it, and which edge it is.
     """
     cells = (ends[..., :2] - origin) / resolution + 0.5  # cell k spans k to k + 1
+    from scipy.ndimage import maximum_filter  # here, so that the viewer shows ground without it
+
     around = maximum_filter(heights, size=3)
     first, last = np.ceil(cells.min(axis=1)), np.floor(cells.max(axis=1))
     count = np.maximum(last - first + 1, 0).astype(np.int64)  # sides of cells that an edge crosses

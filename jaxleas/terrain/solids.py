@@ -2,7 +2,6 @@
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import ConvexHull
 
 _CORNERS = np.array(
     [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
@@ -28,6 +27,8 @@ def box_triangles(
 
 def hull_triangles(points: Float[np.ndarray, "P 3"]) -> Float[np.ndarray, "N 3 3"]:
     """Return the triangles of the convex hull of points."""
+    from scipy.spatial import ConvexHull
+
     hull = ConvexHull(points)
     triangles = points[hull.simplices]
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

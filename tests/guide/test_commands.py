@@ -87,7 +87,7 @@ def test_a_run_folder_stands_for_its_best_policy(files, tmp_path):
         ({"policy": "map.npz"}, "lacks the array"),
         ({"policy": "."}, "not a run folder"),
         ({"terrain": "nothing.npz"}, "does not exist"),
-        ({"terrain": "queries.txt"}, "unknown terrain file type"),
+        ({"terrain": "cloud.las"}, "unknown terrain file type"),
         ({"terrain": "policy.npz"}, "lacks the array"),
         ({"queries": "nothing.json"}, "does not exist"),
         ({"out": "out.csv"}, "written as .npz"),

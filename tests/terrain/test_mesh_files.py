@@ -165,3 +165,40 @@ def test_an_understated_number_of_triangles_is_refused(tmp_path, steps):
     (tmp_path / "steps.stl").write_bytes(content)
     with pytest.raises(InputError, match="its length is not that of the triangles it claims"):
         read_triangles(tmp_path / "steps.stl")
+
+
+def long_obj(rng, form):
+    """Return an OBJ text of 300 points and 300 faces of 3 to 5 corners, and the same in short."""
+    angle = np.arange(5) * 2.0 * np.pi / 5
+    ring = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    points = np.concatenate([ring + rng.uniform(-9, 9, 3) for _ in range(60)]).round(4)
+    faces = [
+        [5 * int(k) + each for each in range(rng.integers(3, 6))] for k in rng.integers(0, 60, 300)
+    ]
+    lines = [f"v {x} {y} {z}" + " 0.5 0.5 0.5" * (form == "colours") for x, y, z in points]
+    write = {"slashes": "{0}/{0}/{0}", "negative": "{1}"}.get(form, "{0}")
+    lines += ["f " + " ".join(write.format(k + 1, k - 300) for k in face) for face in faces]
+    mixed = [line for pair in zip(lines[:300], ["# between"] * 300, strict=True) for line in pair]
+    return lines, [*mixed, *(line + "\n#" for line in lines[300:])]
+
+
+@pytest.mark.parametrize("form", ["plain", "slashes", "negative", "colours"])
+def test_long_runs_of_lines_are_read_as_single_lines_are(tmp_path, form):
+    for text, path in zip(
+        long_obj(np.random.default_rng(2), form), ("a.obj", "b.obj"), strict=True
+    ):
+        (tmp_path / path).write_text("\r\n".join(text) if path == "a.obj" else "\n".join(text))
+    fast, slow = (read_triangles(tmp_path / path) for path in ("a.obj", "b.obj"))
+    assert len(fast) > 300
+    np.testing.assert_array_equal(fast, slow)
+
+
+@pytest.mark.parametrize(
+    "flaw", ["1 2", "1 2 301", "1 2 0", "1 2 x", "1 2 2.5", "1 2 1e30", "1 nan 3"]
+)
+def test_a_flaw_in_a_long_run_is_named(tmp_path, flaw):
+    lines, _ = long_obj(np.random.default_rng(2), "plain")
+    lines[450] = f"f {flaw}"
+    (tmp_path / "a.obj").write_text("\n".join(lines))
+    with pytest.raises(InputError, match=f"{flaw}|2 corners"):
+        read_triangles(tmp_path / "a.obj")

@@ -79,7 +79,7 @@ def test_what_a_configuration_cannot_mean_is_refused_when_it_is_read(folder, ter
     ("file", "said"),
     [
         ("gone.npz", r"terrain\.files: gone\.npz does not exist"),
-        ("run.yaml", r"terrain\.files: \S*run\.yaml: unknown terrain file type '\.yaml'"),
+        ("run.yaml", r"terrain\.files: \S*run\.yaml has 0 lists; a terrain of boxes has one"),
         ("coarse.npz", r"terrain\.files: \S*coarse\.npz is a map of 0\.1 m cells"),
         ("post.npz", r"terrain\.files: \S*post\.npz: talos finds no two places to stand at"),
         ({"file": "wide.png"}, r"terrain\.files: \S*wide\.png is an image: say its"),

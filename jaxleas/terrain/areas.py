@@ -1,0 +1,22 @@
+"""Areas of many polygons at once."""
+
+import numpy as np
+from jaxtyping import Float
+
+_BATCH = 200_000  # polygons at a time, to save memory
+
+
+def area_vectors(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "N 3"]:
+    """Return Newell's vectors: along the right-hand normals, as long as the areas [m^2]."""
+    areas = np.empty((len(polygons), 3))
+    for start in range(0, len(polygons), _BATCH):
+        some = polygons[start : start + _BATCH]
+        edges = some[:, 1:] - some[:, :1]
+        areas[start : start + _BATCH] = 0.5 * np.cross(edges[:, :-1], edges[:, 1:]).sum(axis=1)
+    return areas
+
+
+def bounds(corners: Float[np.ndarray, "*N 3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the smallest and the largest x, y and z [m], column by column, which is faster."""
+    columns = [corners[..., axis] for axis in range(corners.shape[-1])]
+    return np.array([each.min() for each in columns]), np.array([each.max() for each in columns])
