@@ -161,7 +161,7 @@ class Runner:
     def __init__(self, monkeypatch) -> None:
         self.ran = 0
         self._patch = monkeypatch
-        monkeypatch.setattr("jaxleas.training.loop.train", self._replay)
+        monkeypatch.setattr("jaxleas.training.train", self._replay)
         # Judging, export and report after it are commands of their own.
         monkeypatch.setattr("train._conclude", lambda config, run, allow: None)
 
