@@ -1,7 +1,7 @@
-"""What MkDocs is told beside mkdocs.yml: pages that are made, and links that leave docs/.
+"""What MkDocs needs besides mkdocs.yml: pages that are made, and links that leave docs/.
 
-The reference has one page a room, made of its docstrings: of what its `__init__` exports, or, where
-that exports nothing, of all its modules. The changelog is the repository's own.
+The reference has one page per room, made of its docstrings: of what its face names, or, where that
+names nothing, of all its modules. The changelog is the repository's own.
 """
 
 import ast
@@ -55,19 +55,24 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str
 def reference(room: str) -> str:
     """Return the page of a room: its own words, then everything public."""
     tree = ast.parse((PACKAGE / room / "__init__.py").read_text(encoding="utf-8"))
-    names = exported(tree)
+    names = exported(PACKAGE / room / "__init__.pyi")
     lines = [f"# {room}", "", ast.get_docstring(tree) or "", ""]
     for name in names or modules(room):
         lines += [f"::: jaxleas.{room}.{name}", ""]
     return "\n".join(lines)
 
 
-def exported(tree: ast.Module) -> list[str]:
-    """Return what a module's `__all__` lists."""
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__":
-            return list(ast.literal_eval(node.value))
-    return []
+def exported(face: Path) -> list[str]:
+    """Return the functions and classes that a room's face names, from A to Z."""
+    if not face.is_file():
+        return []
+    imports = [
+        node
+        for node in ast.parse(face.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ImportFrom)
+    ]
+    names = [alias.name for node in imports for alias in node.names]
+    return sorted(name for name in names if not name.isupper())
 
 
 def modules(room: str) -> list[str]:

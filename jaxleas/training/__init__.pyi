@@ -1,8 +1,4 @@
 from .config import RunConfig as RunConfig
-from .cores import cores as cores
-from .cores import most_that_divide as most_that_divide
-from .cores import share_cores as share_cores
-from .cores import use_cores as use_cores
 from .devices import Devices as Devices
 from .devices import choose_devices as choose_devices
 from .devices import one_device as one_device
@@ -29,6 +25,10 @@ from .ppo_params import task_numbers as task_numbers
 from .processes import connect as connect
 from .processes import disconnect as disconnect
 from .processes import from_first as from_first
+from .processor import cores as cores
+from .processor import most_that_divide as most_that_divide
+from .processor import share_cores as share_cores
+from .processor import use_cores as use_cores
 from .rehearsal import rehearse as rehearse
 from .run_config import AnyRun as AnyRun
 from .run_config import load_run_config as load_run_config

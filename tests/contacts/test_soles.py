@@ -111,8 +111,8 @@ def test_a_problem_of_a_guide_has_the_soles_of_the_robot(tmp_path) -> None:
     assert dict(asked.half_sizes) == {"LF": (0.1, 0.06), "RF": tuple(SHORT)}
     plan = plan_mip(asked)
     assert certify(asked, plan).certified
-    sizes = {each.limb: each.half_size for each in plan_clip("walk", asked, plan).footholds}
-    assert sizes == {"left": (0.1, 0.06), "right": tuple(SHORT)}
+    sizes = {each.effector: each.half_size for each in plan_clip("walk", asked, plan).footholds}
+    assert sizes == {"LF": (0.1, 0.06), "RF": tuple(SHORT)}
     described = {**content(FLOOR, [["floor"]]), "robot": robot}
     del described["foot_half_size"]
     assert problem(described).half_sizes["RF"] == tuple(SHORT)

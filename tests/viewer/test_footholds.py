@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.problem import ContactProblem, FootPose, Phase
+from jaxleas.contacts.problem import ContactProblem, FootPose, Step
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.robots import write_robot
 from jaxleas.types import InputError
@@ -28,7 +28,7 @@ def here(tmp_path, monkeypatch):
     write_robot("robots/leaner.json", leaner())
 
 
-def asked(robot: str, initial: dict, phases: list) -> ContactProblem:
+def asked(robot: str, initial: dict, steps: list) -> ContactProblem:
     """A problem on a floor before a wall."""
     return replace(
         problem(stones(0.05)),
@@ -36,8 +36,8 @@ def asked(robot: str, initial: dict, phases: list) -> ContactProblem:
         model="feet",
         surfaces={"floor": make_surface(FLOOR, "floor"), "wall": make_surface(WALL, "wall")},
         initial=initial,
-        phases=tuple(phases),
-        foot_half_size=SOLE,
+        steps=tuple(steps),
+        half_sizes=dict.fromkeys(initial, SOLE),
     )
 
 
@@ -52,7 +52,7 @@ def leaning(here):
     """The robot stands, and then puts its palm on the wall."""
     feet = {name: FootPose(np.array([0.0, y, 0.0]), 0.3) for name, y in (("LF", 0.1), ("RF", -0.1))}
     palm = {"RH": FootPose(np.array([0.5, -0.2, 0.9]), 0.0)}
-    touch = Phase("RH", 0.2, ("wall",))
+    touch = Step("RH", 0.2, ("wall",))
     found = asked("leaner", feet | palm, [touch])
     return footholds_of(found, answer(["wall"], [[0.5, -0.3, 1.1]]), 1.0)
 
@@ -89,7 +89,7 @@ def test_a_contact_ends_when_the_same_effector_touches_elsewhere(leaning):
 
 def test_three_legs_have_three_colours_and_points_for_feet(here):
     initial = {name: FootPose(np.array([*xy, 0.0]), 0.0) for name, xy in PLACES.items()}
-    step = Phase("H", 0.0, ("floor",))
+    step = Step("H", 0.0, ("floor",))
     found = footholds_of(
         asked("tripod", initial, [step]), answer(["floor"], [[0.0, 0.0, 0.0]]), 1.0
     )
@@ -107,7 +107,7 @@ def test_each_effector_has_its_own_half_size(here):
         "LF": FootPose(np.array([0.0, 0.1, 0.0]), 0.0),
         "RH": FootPose(np.array([0.5, -0.2, 0.9]), 0.0),
     }
-    found = replace(asked("leaner", standing, []), foot_half_size=bigger)
+    found = replace(asked("leaner", standing, []), half_sizes=dict.fromkeys(standing, bigger))
     foot, palm = footholds_of(found, answer([], []), 1.0)
     assert foot.half_size == bigger  # the problem states its soles
     assert palm.half_size == leaner().effector("RH").half_size

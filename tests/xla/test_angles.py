@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.geometry import bearing, sine_cosine
+from jaxleas.xla import bearing, sine_cosine
 
 LAST_PLACE = 2.0**-23  # of a number about one
 

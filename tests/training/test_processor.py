@@ -2,7 +2,7 @@
 
 import pytest
 
-from jaxleas.training import cores
+from jaxleas.training import processor
 from jaxleas.training.config import PpoConfig
 
 
@@ -13,13 +13,13 @@ from jaxleas.training.config import PpoConfig
 def test_cores_share_a_minibatch_evenly_and_have_sixteen_robots_each(
     there, robots, sharing, monkeypatch
 ):
-    monkeypatch.setattr(cores, "cores", lambda: there)
+    monkeypatch.setattr(processor, "cores", lambda: there)
     ppo = PpoConfig(environments=4 * robots, minibatches=4)
-    assert cores.cores_that_share(ppo) == sharing
+    assert processor.cores_that_share(ppo) == sharing
 
 
 @pytest.mark.parametrize("chosen", ["JAX_NUM_CPU_DEVICES", "XLA_FLAGS"])
 def test_a_number_that_the_user_has_chosen_stays(chosen, monkeypatch):
     monkeypatch.setenv(chosen, "--xla_force_host_platform_device_count=3")
     monkeypatch.setattr("jax.config.update", lambda *_: pytest.fail("it was changed"))
-    cores.use_cores(2)
+    processor.use_cores(2)
