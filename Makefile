@@ -14,7 +14,7 @@ DEV_STAMP := $(VENV)/.dev-installed
 
 train: $(RUN_STAMP)
 	@if [ -e $(RUN_DIR)/config.yaml ]; then \
-	  echo "$(RUN_DIR) exists: going on with it (RUN_DIR=another starts anew)"; \
+	  echo "$(RUN_DIR) exists: resuming it (RUN_DIR=another starts anew)"; \
 	  $(BIN)/python train.py --resume $(RUN_DIR); \
 	else \
 	  $(BIN)/python train.py $(CONFIG) --run-dir $(RUN_DIR); \

@@ -34,7 +34,7 @@ def main(arguments: Sequence[str]) -> None:
         raise UsageError("give a configuration, as configs/leas_p1.yaml, or --resume RUN: one")
     if given.resume and (overrides or given.run_dir):
         surplus = overrides or ["--run-dir"]
-        raise UsageError(f"--resume goes on exactly as configured: leave out {' '.join(surplus)}")
+        raise UsageError(f"--resume continues exactly as configured: leave out {' '.join(surplus)}")
     if given.coordinator is None and given.process is None:
         config, devices, run = _open(given, overrides, arguments)
         with run:

@@ -81,7 +81,7 @@ def posture_from_json(where: str, content: Any) -> Posture:
             raise ValueError("no foot stands")
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(
-            f"{where} is no posture: it needs configuration, how, moved, com, and for each foot,"
+            f"{where} is not a posture: it needs configuration, how, moved, com, and for each foot,"
             " such as LF and RF, position, yaw and surface, all numbers finite"
         ) from error
     if read.how not in get_args(How) or read.moved not in (None, *read.feet):

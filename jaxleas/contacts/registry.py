@@ -14,7 +14,7 @@ from jaxleas.types import InputError
 def _require_planner(name: str, item: Any) -> None:
     if not (isinstance(item, type) and issubclass(item, OwnPlanner | Planner)):
         raise InputError(
-            f"{name} is no planner: derive a class from jaxleas.labels.OwnPlanner and give it"
+            f"{name} is not a planner: derive a class from jaxleas.labels.OwnPlanner and give it"
             " judge(scene, path)"
         )
 

@@ -52,11 +52,11 @@ def practise_faithfully(folder: RoundFolder, training: Faithful, learned: Learne
     else:
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
-        _sit(training, run, learned, str(folder.path.parent))
+        _practise(training, run, learned, str(folder.path.parent))
     conclude(folder, config, time.perf_counter() - begun)
 
 
-def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None:
+def _practise(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None:
     config = training.config
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     fresh = training.fresh_state(learned)
@@ -69,10 +69,10 @@ def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None
         Progress(config.ppo.updates * config.ppo.batch, start=step) as progress,
         Interruption() as interruption,
     ):
-        desk = _Desk(training, run, checkpoints, log, progress, state)
+        session = _Session(training, run, checkpoints, log, progress, state)
         if not resuming:
-            desk.save()
-        done = desk.work(lambda: interruption.requested)
+            session.save()
+        done = session.work(lambda: interruption.requested)
     if done < config.ppo.updates:
         raise InterruptedRunError(
             f"interrupted after {done} of {config.ppo.updates} updates; what was learned is saved:"
@@ -81,7 +81,7 @@ def _sit(training: Faithful, run: RunFolder, learned: Learned, out: str) -> None
 
 
 @dataclass
-class _Desk:
+class _Session:
     """Drives the updates, and records each of them."""
 
     training: Faithful

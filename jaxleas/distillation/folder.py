@@ -12,7 +12,7 @@ rounds.json             the table of all rounds
 policy.npz, surrogate.npz   of the best round
 
 Every file is whole or absent, and each stage is done when its last file is there: a distillation
-that was killed at any moment goes on from the stage it was in.
+that was killed at any moment resumes from the stage it was in.
 """
 
 from dataclasses import dataclass

@@ -47,8 +47,8 @@ def practice_config(
         "final_learning_rate": config.practice.final_learning_rate,
     }
     ppo = start.ppo.model_copy(update=changes)
-    dear = {"failure": start.env.reward.final_failure}
-    reward = start.env.reward.model_copy(update=dear | config.practice.reward)
+    final = {"failure": start.env.reward.final_failure}
+    reward = start.env.reward.model_copy(update=final | config.practice.reward)
     if "failure" in config.practice.reward:
         reward = reward.model_copy(update={"final_failure": reward.failure})
     speed = config.practice.desired_speed or start.env.desired_speed

@@ -111,7 +111,7 @@ def read_run_data(run: Path, planner: str) -> RunData:
     folder = DistillationFolder(run)
     if not folder.table.is_file():
         raise InputError(
-            f"{run} has no rounds.json yet: no round is finished; go on with jaxleas distill"
+            f"{run} has no rounds.json yet: no round is finished; resume it with jaxleas distill"
         )
     data = RunData(run, read_rounds(folder.table))
     for row in data.rounds:

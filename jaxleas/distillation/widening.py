@@ -41,7 +41,7 @@ def widen(
         env.layout.size < before.size
     ):
         raise InputError(
-            f"a policy that sees {before.name} cannot go on with practice.observation ="
+            f"a policy that sees {before.name} cannot be continued with practice.observation ="
             f" {observation}, which does not only add to it: train one with env.observation ="
             f" {observation}"
         )

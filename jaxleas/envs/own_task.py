@@ -9,7 +9,7 @@ from jaxleas.types import InputError
 
 
 def require_task(name: str, item: Any) -> None:
-    """Refuse what is no task, and a task that leaves out what every task has.
+    """Refuse what is not a task, and a task that leaves out what every task has.
 
     Args:
         name: name of the task, MODULE:CLASS.
@@ -20,7 +20,7 @@ def require_task(name: str, item: Any) -> None:
     """
     if not (isinstance(item, type) and issubclass(item, Task)):
         raise InputError(
-            f"{name} is no task: derive a class from jaxleas.envs.Task, as"
+            f"{name} is not a task: derive a class from jaxleas.envs.Task, as"
             " docs/your_own_task.md shows"
         )
     _require_complete(name, item)

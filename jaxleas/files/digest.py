@@ -16,7 +16,7 @@ def digest_of(path: str | Path) -> str:
         InputError: the file is missing, is not a file, or cannot be read.
     """
     if not is_file(path):
-        what = "is no file" if Path(path).exists() else "does not exist"
+        what = "is not a file" if Path(path).exists() else "does not exist"
         raise InputError(f"{path} {what}")
     digest = hashlib.sha256()
     try:

@@ -133,4 +133,4 @@ def _require_file(path: str | Path) -> None:
         if not Path(path).is_file():
             raise InputError(f"{path} does not exist")
     except (OSError, ValueError) as error:  # an impossible name
-        raise InputError(f"{str(path)!r:.200} is no file: {error}") from error
+        raise InputError(f"{str(path)!r:.200} is not a file: {error}") from error

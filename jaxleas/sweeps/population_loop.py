@@ -188,15 +188,15 @@ class _Loop:
 
     def _taken_over(self, parents: np.ndarray) -> TrainState:
         """Return the states after every member has copied what its parent learned."""
-        own = np.arange(len(parents))
-        fallen = [bool(files.failure) for files in self.files]
+        members = np.arange(len(parents))
+        failed = [bool(files.failure) for files in self.files]
         # Robots continue where they are, unless their own policy failed.
-        walkers = np.where(fallen, parents, own)
+        of_robots = np.where(failed, parents, members)
         source = dict.fromkeys(("params", "averaged", "optimiser", "normaliser"), parents)
-        source |= dict.fromkeys(("episode", "observation"), walkers)
+        source |= dict.fromkeys(("episode", "observation"), of_robots)
         taken = {
-            name: jax.tree.map(lambda leaf, who=who: leaf[who], getattr(self.states, name))
-            for name, who in source.items()
+            name: jax.tree.map(lambda leaf, index=index: leaf[index], getattr(self.states, name))
+            for name, index in source.items()
         }
         return self.states.replace(**taken)  # type: ignore[attr-defined]
 

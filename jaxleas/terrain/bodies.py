@@ -94,7 +94,7 @@ class _Edges:
     count: Int[np.ndarray, " E"]
 
     def shared_by(self, sides: int) -> Int[np.ndarray, "E N"]:
-        """Return the sides at each edge that so many share."""
+        """Return the sides at each edge that this number of faces share."""
         order = np.argsort(self.number, kind="stable")
         return order[self.count[self.number[order]] == sides].reshape(-1, sides)
 

@@ -227,7 +227,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
         run("check plan.json --guide flat.npz --scene scene.json")
     written["postures"][1]["LF"]["position"] = [0.0, "left", 0.0]
     write_json("plan.json", written)
-    with pytest.raises(InputError, match=r"plan\.json: posture 1 is no posture"):
+    with pytest.raises(InputError, match=r"plan\.json: posture 1 is not a posture"):
         run("check plan.json --guide flat.npz --scene scene.json")
 
 

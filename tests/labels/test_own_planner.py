@@ -181,7 +181,7 @@ def test_an_answer_may_state_its_cause() -> None:
     [
         ("nowhere_at_all:Walker", "cannot be loaded: No module named 'nowhere_at_all'"),
         ("walkers_of_mine:Runner", "cannot be loaded: module 'walkers_of_mine' has no attribute"),
-        ("walkers_of_mine:something", "is no planner: derive a class from"),
+        ("walkers_of_mine:something", "is not a planner: derive a class from"),
         ("walkers_of_mine:", "cannot be loaded"),
         (":Walker", "cannot be loaded"),
         ("walker", "there is no planner 'walker'; there are sampling, mip, sl1m, or"),

@@ -28,7 +28,7 @@ class GuideFollower:
         at: index of the kept configuration that each path has reached.
         failures: number of failures in a row of each path.
         repositions: number of repositions of each path.
-        live: whether each path still goes on.
+        live: whether each path is still followed.
         ends: way in which each path ends, and the sentence that says why.
         stances: stance at the configuration that each path has reached.
     """

@@ -17,7 +17,7 @@ class SamplingSettings(PlannerSettings):
     seed: NonNegativeInt = 0
     """of the data base"""
     keep_every: PositiveInt = 5
-    """one guide configuration in so many is planned for: 5 makes about 10 cm"""
+    """interval between planned configurations of the guide; 5 makes about 10 cm"""
     heuristic: Heuristic = "fixed_step"
     """by which candidates are tried, best first"""
     look_ahead: PositiveFloat = 0.6
@@ -38,4 +38,4 @@ class SamplingSettings(PlannerSettings):
     moved: PositiveFloat = 0.01
     """a contact that moves by less counts as the same one [m]"""
     stages: tuple[PositiveInt, ...] = (24, 200)
-    """so many candidates are tried together, then so many more, ..."""
+    """number of candidates that are tried together, before the next as many"""

@@ -50,7 +50,7 @@ class Interval:
     def __post_init__(self) -> None:
         width = self.high - self.low
         if not (math.isfinite(width) and width > 0.0):
-            raise InputError(f"{self} is no interval: give finite numbers, low below high")
+            raise InputError(f"{self} is not an interval: give finite numbers, low below high")
         _require_size(self)
 
     def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
@@ -82,7 +82,7 @@ class Ball:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.radius) and self.radius > 0.0):
-            raise InputError(f"{self} is no ball: give a finite radius above 0")
+            raise InputError(f"{self} is not a ball: give a finite radius above 0")
         _require_size(self)
 
     def __call__(self, action: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:
