@@ -44,6 +44,7 @@ def test_what_is_local_or_only_clicked_passes(tmp_path: Path) -> None:
     assert len(outside_fetches(tmp_path)) == 1
 
 
+@pytest.mark.slow
 def test_the_site_is_built_strictly_and_fetches_nothing(tmp_path: Path) -> None:
     pytest.importorskip("mkdocs")
     pytest.importorskip("material")

@@ -44,6 +44,7 @@ def below_its_limit(figure: Figure) -> bool:
     return figure.limit is not None and 0.0 < max(runs) < figure.limit
 
 
+@pytest.mark.slow
 def test_the_environment(context):
     (figure,) = environment._measure("icra81", 64, context).values()
     assert below_its_limit(figure)

@@ -65,6 +65,7 @@ def start(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_what_was_learned_is_read_and_carried_over(start):
     config, learned = read_run(start)
     policy = read_policy(start / "policy.npz")

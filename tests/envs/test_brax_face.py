@@ -18,6 +18,7 @@ def face():
     return BraxSteering(SteeringEnv(SteeringConfig(episode_steps=7)), world)
 
 
+@pytest.mark.slow
 def test_sizes(face):
     state = face.reset(jax.random.key(0))
     assert state.obs.shape == (face.observation_size,) == (144,)

@@ -103,12 +103,14 @@ def test_starts_are_everywhere_that_is_valid(world):
     assert np.ptp(state.motion.yaw) > 6.0
 
 
+@pytest.mark.slow
 def test_the_share_says_how_many_starts_fall_on_files():
     world = world_with(height_map(flat, half_size=4.0), share=0.25)
     pool = draw_starts(ENV, world, jax.random.key(0), 4096)
     assert np.mean(np.asarray(pool.state.plan.map_index) == 2) == pytest.approx(0.25, abs=0.03)
 
 
+@pytest.mark.slow
 def test_the_other_starts_are_those_of_a_world_without_files():
     arenas = [generate_arena(GeneratorConfig(rows=3, columns=3), seed) for seed in range(2)]
     plain = draw_starts(ENV, make_world(arenas, 0.05), jax.random.key(5), 256).state

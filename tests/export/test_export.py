@@ -187,6 +187,7 @@ def test_what_is_no_stablehlo_is_refused(tmp_path, content):
         read_stablehlo(file)
 
 
+@pytest.mark.slow
 def test_recorded_observations_are_what_a_walking_robot_sees():
     policy = random_policy(4)
     task = Steering(policy.config)

@@ -90,6 +90,7 @@ def test_the_risk_dial_ends_what_has_become_too_unsure():
         SurrogateForesight(surrogate(), threshold=1.0)
 
 
+@pytest.mark.slow
 def test_in_turns_everybody_is_judged_as_ever_once_their_times_are_apart():
     """Twins: who is served late at first is served on time from then on, by the same network."""
     count, one = 2 * GROUP, surrogate()

@@ -79,6 +79,7 @@ def arrays_of(path: Path) -> dict[str, np.ndarray]:
         return {name: archive[name] for name in archive.files if name != "manifest"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", ["22", "21", "12"])
 def test_two_devices_compute_what_one_computes(report, way):
     """Also when a checkpoint of one number of devices is gone on with on another."""

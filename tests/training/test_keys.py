@@ -13,6 +13,7 @@ from .runs import TINY, SteeringRun
 pytestmark = pytest.mark.usefixtures("brax_ranks")
 
 
+@pytest.mark.slow
 def test_starts_of_every_kind_and_an_update_use_each_key_once(tmp_path):
     level = np.zeros((200, 200), np.float32)
     write_height_map(tmp_path / "yard.npz", HeightMap(level, 0.04, (0.0, 0.0)))

@@ -24,6 +24,7 @@ def checkpoint_arrays(folder):
         return newest.name, {name: archive[name] for name in archive.files if name != "manifest"}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("brax_ranks")
 def test_a_damaged_best_policy_is_made_again_from_its_checkpoint(tmp_path, caplog):
     path = tmp_path / "run"

@@ -137,6 +137,7 @@ def test_values_and_gradients_are_those_of_brax(seed, activation):
         np.testing.assert_allclose(each, theirs_, rtol=0, atol=2e-5 * scale)
 
 
+@pytest.mark.slow
 def test_products_in_bfloat16_give_nearly_the_same_gradient():
     config = SteeringRun()
     normaliser = initial_normaliser(config.network, SIGNATURE)

@@ -55,6 +55,7 @@ def run(condition=None, env=None, **ppo):
     return state, history, networks
 
 
+@pytest.mark.slow
 def test_the_cost_of_failing_grows_from_the_environments_to_the_final_one():
     """Nobody survives a step: the mean reward is the cost of failing, update by update."""
 
@@ -78,6 +79,7 @@ def test_the_value_of_staying_alive_is_the_geometric_sum():
     assert mean_value(state, networks) == pytest.approx(0.5 / (1 - 0.8), rel=0.03)
 
 
+@pytest.mark.slow
 def test_nothing_follows_a_termination():
     """Every first step fails, so V is the reward of that one step: what the failure costs."""
 

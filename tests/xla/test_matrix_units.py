@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import pytest
 
 from jaxleas.training.config import NetworkConfig
-from jaxleas.xla import matrix_units
 from jaxleas.xla.matrix_units import has_matrix_units, multiplies_bfloat16
 
 
@@ -38,6 +37,6 @@ def test_other_accelerators_have_them():
 
 
 def test_auto_asks_the_machine_and_a_choice_does_not(monkeypatch):
-    monkeypatch.setattr(matrix_units, "native_products", lambda: "bfloat16")
+    monkeypatch.setattr("jaxleas.xla.native_products", lambda: "bfloat16")
     assert NetworkConfig(products="auto").product_type == "bfloat16"
     assert NetworkConfig(products="float32").product_type == "float32"
