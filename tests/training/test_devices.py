@@ -94,6 +94,7 @@ def test_two_devices_compute_what_one_computes(report, way):
         np.testing.assert_allclose(found[name], value, rtol=1e-3, atol=1e-4, err_msg=name)
 
 
+@pytest.mark.slow
 def test_each_of_two_devices_has_half_of_the_work(report):
     metrics, _ = report
     one, two = metrics["flops"]["1"], metrics["flops"]["2"]
