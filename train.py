@@ -11,7 +11,6 @@ that the configuration names (a task, a condition), and with [--coordinator HOST
 import argparse
 import sys
 from collections.abc import Sequence
-from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -20,6 +19,7 @@ from jaxleas.cli_guard import UsageError, run_guarded
 
 # JAX takes a second to import: not before the command line is parsed.
 if TYPE_CHECKING:
+    from jaxleas.envs import Task
     from jaxleas.runs import RunFolder
     from jaxleas.training import Devices, RunConfig
 
@@ -36,9 +36,9 @@ def main(arguments: Sequence[str]) -> None:
         surplus = overrides or ["--run-dir"]
         raise UsageError(f"--resume continues exactly as configured: leave out {' '.join(surplus)}")
     if given.coordinator is None and given.process is None:
-        config, devices, run = _open(given, overrides, arguments)
+        config, task, devices, run = _open(given, overrides, arguments)
         with run:
-            _train(config, devices, run, given.allow)
+            _train(config, task, devices, run)
             _conclude(config, run, given.allow)
     else:
         _train_together(given, overrides, arguments)
@@ -60,17 +60,20 @@ def _train_together(
     connect(given.coordinator, given.process)
     source = "process 0's configuration"
     config = parse_run_config(parse_json(from_first(open_run), source), source, given.allow)
-    run = opened[0][2] if opened else None
-    with run or nullcontext():
-        _train(config, choose_devices(given.devices, config.ppo), run, given.allow)
+    if not opened:
+        _assist(config, choose_devices(given.devices, config.ppo), given.allow)
         disconnect()
-        if run is not None:
-            _conclude(config, run, given.allow)
+        return
+    _, task, devices, run = opened[0]
+    with run:
+        _train(config, task, devices, run)
+        disconnect()
+        _conclude(config, run, given.allow)
 
 
 def _open(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
-) -> "tuple[RunConfig, Devices, RunFolder]":
+) -> "tuple[RunConfig, Task, Devices, RunFolder]":
     from jaxleas.configuration import to_yaml
     from jaxleas.runs import RunFolder, require_watchers
     from jaxleas.training import load_run_config, make_task, pinned, rehearse
@@ -79,9 +82,10 @@ def _open(
         found = RunFolder.open(given.resume, needs_checkpoint=False)
         config = load_run_config(found.config, allow=given.allow)
         devices = _devices(given, config)  # before anything touches JAX's devices
-        make_task(config, given.allow)  # before the folder is held: its code may not be allowed
+        task = make_task(config, given.allow)  # before the folder is held: it may not be allowed
+        rehearse(config, task)
         run = RunFolder.open(given.resume, writing=True, needs_checkpoint=False)
-        return config, devices, run
+        return config, task, devices, run
     config = pinned(load_run_config(given.config, overrides, given.allow))
     require_watchers(config.watch)  # before a folder is made
     devices = _devices(given, config)
@@ -90,7 +94,7 @@ def _open(
     rehearse(config, task)
     name = f"runs/{Path(given.config).stem}_{datetime.now():%Y-%m-%d_%H-%M-%S}"
     run = RunFolder.create(given.run_dir or name, to_yaml(config), ["train.py", *arguments])
-    return config, devices, run
+    return config, task, devices, run
 
 
 def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
@@ -101,17 +105,20 @@ def _devices(given: argparse.Namespace, config: "RunConfig") -> "Devices":
     return choose_devices(given.devices, config.ppo)
 
 
-def _train(
-    config: "RunConfig", devices: "Devices", run: "RunFolder | None", allow: Sequence[str]
-) -> None:
-    from jaxleas.training import assist, train
+def _train(config: "RunConfig", task: "Task", devices: "Devices", run: "RunFolder") -> None:
+    from jaxleas.training import train_task
     from jaxleas.xla import keep_compiled_programs
 
     keep_compiled_programs()
-    if run is None:
-        assist(config, devices, allow)
-    else:
-        train(config, run, devices=devices, allow=allow)
+    train_task(config, task, run, devices)
+
+
+def _assist(config: "RunConfig", devices: "Devices", allow: Sequence[str]) -> None:
+    from jaxleas.training import assist
+    from jaxleas.xla import keep_compiled_programs
+
+    keep_compiled_programs()
+    assist(config, devices, allow)
 
 
 def _conclude(config: "RunConfig", run: "RunFolder", allow: Sequence[str]) -> None:

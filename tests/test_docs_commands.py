@@ -161,7 +161,7 @@ class Runner:
     def __init__(self, monkeypatch) -> None:
         self.ran = 0
         self._patch = monkeypatch
-        monkeypatch.setattr("jaxleas.training.train", self._replay)
+        monkeypatch.setattr("jaxleas.training.train_task", self._replay)
         # Judging, export and report after it are commands of their own.
         monkeypatch.setattr("train._conclude", lambda config, run, allow: None)
 
@@ -198,7 +198,7 @@ class Runner:
             cli.run(arguments)
 
     @staticmethod
-    def _replay(config, run, **_):
+    def _replay(config, task, run, *_):
         policy = homing_policy()
         write_policy(run.path / "policy.npz", policy)
         return policy

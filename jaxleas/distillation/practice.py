@@ -17,11 +17,10 @@ from jaxleas.runs import Checkpoints, RunFolder
 from jaxleas.training import (
     Devices,
     Learned,
-    Trainer,
     initial_normaliser,
     make_networks,
     policy_of,
-    train_with,
+    train_task,
     write_policy,
 )
 
@@ -82,7 +81,7 @@ def practise(
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
         task = Steering(config.env, config.terrain, foresight=foresight)
-        train_with(Trainer(config, task, devices), run, learned)
+        train_task(config, task, run, devices, learned)
     conclude(folder, config, time.perf_counter() - begun)
 
 

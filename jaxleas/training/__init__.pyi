@@ -6,7 +6,7 @@ from .examination import make_examination as make_examination
 from .loop import POLICY_FILE as POLICY_FILE
 from .loop import assist as assist
 from .loop import train as train
-from .loop import train_with as train_with
+from .loop import train_task as train_task
 from .loss import Experience as Experience
 from .networks.actor_critic import ActorCritic as ActorCritic
 from .networks.actor_critic import make_networks as make_networks

@@ -74,7 +74,7 @@ class Devices:
 
         Args:
             function: function that returns the same on each device.
-            robot_axes: for each argument, or each part of it, the axis along which its arrays have
+            robot_axes: axis of each argument, or of each part of it, along which its arrays have
                 one entry per robot or group of robots; None: every device has the whole.
         """
         specs = jax.tree.map(

@@ -9,6 +9,7 @@ import jax
 import numpy as np
 
 from jaxleas.configuration import is_own, methods_of
+from jaxleas.envs import Task
 from jaxleas.runs import (
     Background,
     Checkpoints,
@@ -76,31 +77,39 @@ def train(
         InputError: a watcher is not installed or not set up; or a user's own task does not keep
             the protocol, or raises an exception.
     """
-    require_watchers(config.watch)  # before minutes go into compiling
     task = make_task(config, allow)
     rehearse(config, task)
-    own = is_own(config.env.task)
-    with methods_of(task, f"the task {config.env.task}") if own else nullcontext():
-        trainer = Trainer(config, task, devices or one_device())
-        return train_with(trainer, run, learned, on_examined)
+    return train_task(config, task, run, devices or one_device(), learned, on_examined)
 
 
-def train_with(
-    trainer: Trainer,
+def train_task(
+    config: RunConfig,
+    task: Task,
     run: RunFolder,
+    devices: Devices,
     learned: Learned | None = None,
     on_examined: Callable[[], None] = lambda: None,
 ) -> Policy:
-    """Train to the end, or until interrupted, as `train` does, with a trainer made before.
+    """Train to the end, or until interrupted, as `train` does, a task that was made before.
 
     Args:
-        trainer: task, worlds and compiled functions of the training.
+        config: configuration of the run.
+        task: task that is learned; one of the user's own has been rehearsed.
         run: folder held for writing.
+        devices: devices that share the training.
         learned: networks to begin with, as for `train`.
         on_examined: function that is called after each examination, as for `train`.
     """
+    require_watchers(config.watch)  # before minutes go into compiling
+    own = is_own(config.env.task)
+    with methods_of(task, f"the task {config.env.task}") if own else nullcontext():
+        return _train(Trainer(config, task, devices), run, learned, on_examined)
+
+
+def _train(
+    trainer: Trainer, run: RunFolder, learned: Learned | None, on_examined: Callable[[], None]
+) -> Policy:
     config = trainer.config
-    require_watchers(config.watch)
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
     step, state, best = _first_state(trainer, checkpoints, learned)

@@ -1,6 +1,7 @@
 """Steering as a task: its worlds, its starts, and the growing cost of a failure."""
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property
 from typing import Any, Self
 
 import jax
@@ -60,12 +61,13 @@ class Steering(Task):
 
     def require_worlds(self) -> None:
         """Refuse terrain files that cannot be trained on."""
-        files = self._own_maps()
+        files = self._own_maps
         if files is not None:
             make_own_terrain(files.robot, files.maps, files.share, first_map=0)
 
+    @cached_property
     def _own_maps(self) -> OwnMaps | None:
-        """Read the terrain files; None: the configuration names none."""
+        """Terrain files, read once; None: the configuration names none."""
         terrain = self.worlds
         if not terrain.files:
             return None
@@ -90,7 +92,7 @@ class Steering(Task):
             generator = generator.model_copy(update={"obstacles": clear})
             shares |= dict.fromkeys(NOT_CROSSED, 0.0)
         arenas = [generate_arena(generator, seed) for seed in seeds]
-        files = None if examined else self._own_maps()
+        files = None if examined else self._own_maps
         return make_world(arenas, terrain.resolution, shares, files)
 
     def draw_starts(
