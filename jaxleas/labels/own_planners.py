@@ -1,4 +1,4 @@
-"""What a planner of one's own needs, from the rooms where it is defined."""
+"""Names of other rooms that go with labels: planners of your own, settings, verdicts, workers."""
 
 from jaxleas.contacts import (
     AskedGuides,

@@ -1,13 +1,17 @@
-"""Toy robots with other effectors than two feet."""
+"""Toy robots with other effectors than two feet, and the floor and wall that they touch."""
 
 import numpy as np
 
 from jaxleas.geometry import Box, Polytope
 from jaxleas.robots import Effector, Limb, Robot
 from jaxleas.robots.effector import Kind
+from tests.contacts.worlds import rectangle
 
 PLACES = {"FL": (0.25, 0.2), "FR": (0.25, -0.2), "H": (-0.3, 0.0)}
 """Where the feet of the three-legged robot stand below its root [m]."""
+FLOOR = np.array(rectangle(-2.0, 6.0, -1.5, 1.5))
+WALL = np.array([[0.5, 1.0, 0.0], [0.5, -1.0, 0.0], [0.5, -1.0, 2.0], [0.5, 1.0, 2.0]])
+"""Before the robot: counter-clockwise as the robot sees it, so that its normal is -x."""
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Polytope:

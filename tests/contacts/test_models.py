@@ -15,9 +15,9 @@ from jaxleas.labels import Oracle, read_verdicts
 from jaxleas.robots import load_talos, write_robot
 from jaxleas.terrain.scene import Scene, write_scene
 from jaxleas.types import InputError
-from tests.contacts.effectors import tripod
+from tests.contacts.effectors import FLOOR, tripod
 from tests.contacts.sampling.worlds import straight
-from tests.contacts.test_effectors import FLOOR, guide
+from tests.contacts.test_effectors import guide
 
 THREE = "two_com is for two feet, not for 3"
 PLAIN = "two_com needs step polytopes COM_in_LF and COM_in_RF, which are missing"

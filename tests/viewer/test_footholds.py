@@ -14,8 +14,7 @@ from jaxleas.viewer.clips import plan_clip
 from jaxleas.viewer.footholds import footholds_of
 from jaxleas.viewer.playback import THICKNESS, middle_of_sole, robot_to_draw
 from jaxleas.viewer.robot_shape import LIMBS, limb_colour
-from tests.contacts.effectors import PLACES, leaner, tripod
-from tests.contacts.test_effectors import FLOOR, WALL
+from tests.contacts.effectors import FLOOR, PLACES, WALL, leaner, tripod
 from tests.contacts.worlds import problem, stones
 
 SOLE = (0.05, 0.04)
