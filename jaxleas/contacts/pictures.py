@@ -51,7 +51,7 @@ def draw_plan(
         problem: the contact problem.
         plan: answer to the problem.
         guide: guide path, which is drawn whole; the roots of the steps if None.
-        made: plan for the steps before the first that cannot be made; None where `plan` is whole.
+        made: plan for the steps before the first that cannot be made; None if there is none.
 
     Raises:
         InputError: the picture cannot be written, or is of an unknown type.

@@ -34,7 +34,10 @@ COPLANAR = 1e-6
 
 
 def mesh_to_scene(
-    path: str | Path, up: Up | None = None, scale: float = 1.0, reading: Reading = READING
+    path: str | Path,
+    up: Up | None = None,
+    scale: float | None = None,
+    reading: Reading = READING,
 ) -> Scene:
     """Return a mesh as a scene of convex polygons; faces that point down are left out.
 
@@ -44,15 +47,15 @@ def mesh_to_scene(
     Args:
         path: path of a mesh.
         up: axis of the mesh that points up; None: that of `reading`.
-        scale: metres per unit of the file, if `reading` says nothing of it.
-        reading: what becomes the origin, and what is kept.
+        scale: metres per unit of the file; None: that of `reading`.
+        reading: what the file does not state itself, and what is done with it.
 
     Raises:
         InputError: the file is unreadable, is not a terrain, has no face to stand on, or its
             scene and its height map contradict each other.
     """
-    if up is not None or scale != 1.0:
-        reading = replace(reading, up=up, scale=scale)
+    stated = {"up": up, "scale": scale}
+    reading = replace(reading, **{name: each for name, each in stated.items() if each is not None})
     triangles = read_triangles(path, reading)
     points, faces = welded(triangles)
     scene = _scene(points, faces)

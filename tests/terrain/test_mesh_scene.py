@@ -7,6 +7,7 @@ import trimesh
 from jaxleas.terrain import mesh_to_scene, rasterise
 from jaxleas.terrain.importers import import_mesh
 from jaxleas.terrain.polygons import polygon_area_vector
+from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.scene import require_valid
 from jaxleas.types import InputError
 
@@ -69,3 +70,11 @@ def test_scene_and_map_of_a_real_mesh_agree(name):
     assert np.mean(np.isnan(direct) != np.isnan(through_scene)) < 0.03
     both = ~np.isnan(direct) & ~np.isnan(through_scene)
     assert np.mean(np.abs(direct - through_scene)[both] > 0.01) < 0.03
+
+
+def test_what_is_stated_alone_replaces_only_that_of_the_reading(tmp_path):
+    trimesh.creation.box(extents=(2000.0, 500.0, 1000.0)).export(tmp_path / "box.stl")
+    scene = mesh_to_scene(tmp_path / "box.stl", up="y", reading=Reading(scale=0.001))
+    (top,) = scene.surfaces.values()
+    np.testing.assert_allclose(np.sort(np.ptp(top, axis=0)), [0.0, 1.0, 2.0], atol=1e-6)
+    assert area(scene) == pytest.approx(2.0)
