@@ -57,6 +57,7 @@ def navigate(
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
     """
     from jaxleas.guide.picture import draw_navigation, require_picture
+    from jaxleas.guide.place_refusal import require_valid
     from jaxleas.guide.roadmaps import Budget, Places
     from jaxleas.guide.roadmaps.exact import check_exactly, require_exact_start, scene_of
     from jaxleas.guide.roadmaps.ompl import import_ompl
@@ -82,7 +83,7 @@ def navigate(
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
-    places.require_valid("--to", goal, None)
+    require_valid(places, "--to", goal, None)
     scene = scene_of(terrain, reading)
     if scene is not None:
         require_exact_start(places, scene, motion)

@@ -1,4 +1,4 @@
-"""Where a robot can stand: draw such places, and explain why it cannot stand elsewhere."""
+"""The places of a terrain where a robot can stand: test them, and draw them."""
 
 import math
 
@@ -16,13 +16,7 @@ from jaxleas.types import InputError, RootMotion, RootPose, is_ground
 
 HEADINGS = np.linspace(-math.pi, math.pi, 8, endpoint=False)
 """A robot can stand at a place if any of these headings is valid there [rad]."""
-NEARBY = 0.1
-"""Spacing of the grid on which the nearest valid pose is sought [m]."""
 _AT_ONCE, _FEW = 4096, 16  # poses tried in one compiled call
-
-
-MOST_TRIED = 1_000_000
-"""Maximum number of points of that grid; on larger terrain the grid is coarser."""
 
 
 class Places:
@@ -123,26 +117,6 @@ class Places:
                 return np.array(found[:count])
         raise InputError("there is hardly a place on this terrain where the robot can stand")
 
-    def require_valid(self, name: str, place: tuple[float, float], yaw: float | None) -> RootPose:
-        """Return the pose of a robot that stands at a place, if it is valid.
-
-        Args:
-            name: name of the pose in messages, such as "--from".
-            place: place x, y [m].
-            yaw: heading [rad]; None accepts any valid heading.
-
-        Raises:
-            InputError: the robot cannot stand there; the message says which condition fails, by
-                how much, and which valid pose is nearest.
-        """
-        here = np.array([place])
-        headings = HEADINGS if yaw is None else np.array([yaw])
-        valid = self.valid(np.repeat(here, len(headings), axis=0), headings)
-        if valid.any():
-            chosen = float(headings[np.argmax(valid)])
-            return self.pose(here[0], chosen)
-        raise InputError(f"{name} {place[0]:g},{place[1]:g}: {self._why(here, headings, yaw)}")
-
     def pose(self, place: Float[np.ndarray, " 2"], yaw: float) -> RootPose:
         """Return the pose of a root at walking height.
 
@@ -150,67 +124,6 @@ class Places:
             InputError: there is no ground.
         """
         return RootPose.from_yaw(np.array([*place, self.root_height(place[None])[0]]), yaw)
-
-    def why_invalid(
-        self, place: Float[np.ndarray, " 2"], headings: Float[np.ndarray, " H"], facing: str
-    ) -> str:
-        """Return why a robot can stand at a place with none of the headings, and by how much.
-
-        Args:
-            place: place x, y [m].
-            headings: headings that were tried [rad].
-            facing: those headings in words, such as "at yaw 1.5".
-        """
-        x_min, x_max, y_min, y_max = self.terrain.extent
-        x, y = place
-        if not (x_min <= x <= x_max and y_min <= y <= y_max):
-            return f"off the map, which spans x {x_min:g} to {x_max:g}, y {y_min:g} to {y_max:g} m"
-        if not is_ground(self.root_height(place[None])[0]):
-            return "there is no ground"
-        margins = self.margins(np.tile(place, (len(headings), 1)), headings)
-        total = margins.pop("the condition")
-        best = int(np.argmax(total))
-        named = {name: float(each[best]) for name, each in margins.items()}
-        failed = [f"{name} fails by {-m:.2f} m" for name, m in named.items() if m < 0.0]
-        own = f"the condition fails by {-float(total[best]):.2f} m"
-        return f"{facing} {' and '.join(failed) or own}"
-
-    def _why(self, here: np.ndarray, headings: np.ndarray, yaw: float | None) -> str:
-        facing = "at any heading" if yaw is None else f"at yaw {yaw:g}"
-        reason = self.why_invalid(here[0], headings, facing)
-        nearest = self.nearest(here[0], yaw)
-        if nearest is None:
-            return f"{reason}; nowhere on this terrain can the robot stand"
-        at, heading = nearest
-        turned = f",{heading:.2f}" if yaw is not None else ""
-        pose, away = f"{at[0]:.2f},{at[1]:.2f}{turned}", math.dist(at, here[0])
-        return f"{reason}; the nearest valid pose is {pose}, {away:.2f} m away"
-
-    def nearest(
-        self, here: Float[np.ndarray, " 2"], yaw: float | None
-    ) -> tuple[tuple[float, float], float] | None:
-        """Return the valid place nearest to a point, on a grid of 0.1 m, and a heading there.
-
-        Of several headings the one nearest to `yaw` is taken.
-        """
-        x_min, x_max, y_min, y_max = self.terrain.extent
-        spacing = max(NEARBY, math.sqrt((x_max - x_min) * (y_max - y_min) / MOST_TRIED))
-        x, y = np.arange(x_min, x_max, spacing), np.arange(y_min, y_max, spacing)
-        grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        grid = np.vstack([here[None], np.round(grid, 2)])
-        order = np.argsort(np.linalg.norm(grid - here, axis=1), kind="stable")
-        wanted = 0.0 if yaw is None else yaw
-        turn = np.concatenate([[0.0], sorted(HEADINGS, key=abs)])
-        for first in range(0, len(grid), 256):
-            some = grid[order[first : first + 256]]
-            headings = np.tile(wanted + turn, len(some))
-            valid = self.valid(np.repeat(some, len(turn), axis=0), headings)
-            if valid.any():
-                index = int(np.argmax(valid))
-                heading = wrap_angle_on_host(headings[index])
-                at = some[index // len(turn)]
-                return (float(at[0]), float(at[1])), float(heading)
-        return None
 
 
 def walking_heights(

@@ -7,6 +7,8 @@ from jaxtyping import Float
 from scipy.ndimage import minimum_filter
 
 from jaxleas.envs.steering import SteeringEnv
+from jaxleas.guide.nearest_place import nearest_place
+from jaxleas.guide.place_refusal import require_valid, why_invalid
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError, RootMotion, RootPose
@@ -67,8 +69,8 @@ def require_start(
     places = Places(env, terrain)
     if places.valid(place[None], np.array([yaw]))[0]:
         return places.pose(place, yaw)
-    problem = places.why_invalid(place, np.array([yaw]), f"at {degrees:g} deg")
-    nearest = places.nearest(place, yaw)
+    problem = why_invalid(places, place, np.array([yaw]), f"at {degrees:g} deg")
+    nearest = nearest_place(places, place, yaw)
     if nearest is None:
         raise InputError(f"{where}: {problem}; nowhere on this terrain can the robot stand")
     (x, y), heading = nearest
@@ -96,7 +98,7 @@ def start_motion(
         headings = facing + np.array(sorted(HEADINGS, key=abs))
         valid = places.valid(np.tile(start, (len(headings), 1)), headings)
         yaw = float(headings[np.argmax(valid)]) if valid.any() else None
-    pose = places.require_valid("--from", start, yaw)
+    pose = require_valid(places, "--from", start, yaw)
     heading = float(pose.yaw) if yaw is None else yaw
     motion = places.standing(np.array([start]), np.array([heading]))
     return RootMotion(motion.position[0], motion.velocity[0], motion.yaw[0])

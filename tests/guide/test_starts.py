@@ -3,6 +3,7 @@ import pytest
 
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
+from jaxleas.guide.nearest_place import nearest_place
 from jaxleas.guide.places import Places
 from jaxleas.guide.starts import choose_start, require_start
 from jaxleas.terrain import rasterise, transition
@@ -56,7 +57,7 @@ def test_the_place_that_would_do_is_the_nearest_of_a_slow_search():
     terrain = flat_map()
     terrain.heights[:, 60:63] = 1.0
     places = Places(ENV, terrain)
-    at, _ = places.nearest(np.array([1.9, 0.5]), 0.0)
+    at, _ = nearest_place(places, np.array([1.9, 0.5]), 0.0)
     x_min, x_max, y_min, y_max = terrain.extent
     grid = np.stack(
         np.meshgrid(np.arange(x_min, x_max, 0.1), np.arange(y_min, y_max, 0.1)), axis=-1
