@@ -12,6 +12,7 @@ from .loading import Layers as Layers
 from .loading import layers_of as layers_of
 from .loading import load_config as load_config
 from .loading import load_layers as load_layers
+from .loading import merge as merge
 from .loading import to_yaml as to_yaml
 from .loading import validate as validate
 from .own_code import methods_of as methods_of

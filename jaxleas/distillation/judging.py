@@ -10,6 +10,7 @@ from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation import Bookkeeping, CellResult, Planner, judge_exact, make_suite, walker
 from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide import leas
+from jaxleas.terrain import scale_for
 from jaxleas.training import Policy
 from jaxleas.types import InputError
 
@@ -47,7 +48,7 @@ def judge_round(
     env = SteeringEnv(policy.config.under_standard_conditions())
     cells: list[CellResult] = []
     for name in config.suites:
-        suite = make_suite(name, config.starts, held_out=True)
+        suite = make_suite(name, config.starts, held_out=True).scaled(scale_for(env.robot))
         cells += judge_exact(
             env,
             {method: walker(env, leas(env, policy))},

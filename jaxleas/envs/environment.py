@@ -41,6 +41,19 @@ class TaskConfig(Strict, ABC):
     task: str
     """Name of the task, or MODULE:CLASS of the user's own task."""
 
+    @classmethod
+    def suited(cls, stated: Mapping[str, Any]) -> dict[str, Any]:
+        """Return values for a run's sections that suit what its section `env` states.
+
+        They count where neither a file nor the command line states another: the sizes that suit
+        the robot, say.
+
+        Args:
+            stated: values that files and the command line state in the section.
+        """
+        del stated
+        return {}
+
     def pinned(self) -> Self:
         """Return the same task, with the absolute path and digest of each file that it names.
 

@@ -17,7 +17,7 @@ from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.guide import SteeringMethod, leas, load_policy
 from jaxleas.labels import Judge
-from jaxleas.terrain import Scene
+from jaxleas.terrain import Scene, scale_for
 from jaxleas.types import GuidePath, Verdict
 
 Walker = Callable[[Grounds, Starts, int], CellRollOut]
@@ -195,16 +195,17 @@ def exact_success(
         policy: file of a steering policy.
         planner: name of the exact planner.
         settings: settings of the planner.
-        suites: suites to be walked.
+        suites: suites to be walked, in published sizes; they are scaled to the policy's robot.
     """
     found = load_policy(policy)
     env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
+    scale = scale_for(env.robot)
     with Judge(planner, settings, robot=found.config.robot) as judge:
         shares = [
             cell.planned or 0.0
             for suite in suites
-            for cell in judge_exact(env, walkers, suite, {planner: judge})
+            for cell in judge_exact(env, walkers, suite.scaled(scale), {planner: judge})
         ]
     return sum(shares) / len(shares)
 

@@ -14,6 +14,7 @@ from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, wri
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
 from jaxleas.guide import BASELINES, LEAS, SteeringMethod, load_policy, policy_file
+from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
 POLICY = LEAS.key
@@ -84,6 +85,7 @@ def examine(
         fingerprint=candidate.fingerprint,
         foresight=None if candidate.refusal is None else candidate.refusal.describe(),
         robot=candidate.env.config.robot,
+        scale=suite.scale,
         seed=suite.seed,
         created=now(),
         seconds=round(time.perf_counter() - begin, 2),
@@ -104,7 +106,8 @@ def run_evaluations(
 ) -> list[Evaluation]:
     """Return a run's evaluations on all suites: those it holds, and the others, made and kept now.
 
-    An evaluation of another policy than the run's present one, or an unreadable one, is made again.
+    An evaluation of another policy than the run's present one, on scenes of another scale, or an
+    unreadable one, is made again.
 
     Args:
         candidate: policy of the run.
@@ -112,15 +115,19 @@ def run_evaluations(
         basis: suites and terrain, shared with the report's pictures.
         progress: called with the cell that is being walked.
     """
+    scale = scale_for(candidate.env.robot)
     evaluations = []
     for name in REPORTED:
         path = evaluation_file(run, name)
         evaluation = kept_evaluation(path, candidate)
-        if evaluation is None:
+        if evaluation is None or evaluation.scale != scale.leg:
             suite = basis.suites.get(name)
             grounds = None if suite is None else basis.grounds
             evaluation = examine(
-                candidate, suite or make_suite(name), progress=progress, grounds=grounds
+                candidate,
+                suite or make_suite(name).scaled(scale),
+                progress=progress,
+                grounds=grounds,
             )
             write_evaluation(path, evaluation)
         evaluations.append(evaluation)
@@ -145,7 +152,7 @@ def keep_evaluation(run: Path, candidate: Candidate, evaluation: Evaluation) -> 
     """
     path = evaluation_file(run, evaluation.suite)
     kept = kept_evaluation(path, candidate)
-    if kept is None or _walks(kept) <= _walks(evaluation):
+    if kept is None or kept.scale != evaluation.scale or _walks(kept) <= _walks(evaluation):
         write_evaluation(path, evaluation)
 
 

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from jaxleas.configuration import Count, Fraction, NonNegative, Strict
+from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
 from jaxleas.files import read_typed, write_json
 
 
@@ -71,6 +71,8 @@ class Figures(Strict):
     """SHA-256 of each policy's file, by the method's name."""
     seed: int
     held_out: bool
+    scale: Positive = 1.0
+    """Length in the scenes for one metre of the published ones; 1 in files of earlier versions."""
     steps: tuple[StepRow, ...] = ()
     along: tuple[float, ...] = ()
     """Where the heights are taken, along the stairs [m]."""

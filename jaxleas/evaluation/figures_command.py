@@ -15,6 +15,7 @@ from jaxleas.evaluation.result_file import now
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import KINO, ResultName
 from jaxleas.labels import planner_workers, settings_of
+from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
 METHODS = (KINO.key, POLICY)
@@ -69,6 +70,7 @@ def figures(
         raise InputError("--parameters keep_every: give the numbers to measure as --keep-every")
     stated = settings_from(find_planner(planner, [planner]), **given)
     candidate = load_candidate(run)
+    suite = suite.scaled(scale_for(candidate.env.robot))
     robot = candidate.env.config.robot
     settings = stated.for_robot(robot)
     if note := stated.note_for(robot):
@@ -85,6 +87,7 @@ def figures(
         policies=fingerprints,
         seed=seed,
         held_out=held_out,
+        scale=suite.scale,
     )
     found = _opened(out, head)
     write_figures(out, found)
@@ -111,7 +114,7 @@ def _opened(out: Path, head: Figures) -> Figures:
     if not Path(out).is_file():
         return head
     before = read_figures(out)
-    for name in ("planner", "settings", "seed", "held_out"):
+    for name in ("planner", "settings", "seed", "held_out", "scale"):
         if getattr(before, name) != getattr(head, name):
             raise InputError(
                 f"{out} has {name} {getattr(before, name)}, not {getattr(head, name)}: give another"

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from jaxleas.evaluation.starts import Grounds, make_grounds
 from jaxleas.evaluation.suites import REPORTED, STARTS_PER_SCENE, Cell, Suite, make_suite
+from jaxleas.terrain import PUBLISHED, Scale
 
 LARGE = "transitions"
 """The suite with many scenes; a report only draws the first of each kind."""
@@ -26,15 +27,20 @@ class ReportBasis:
     grounds: Grounds
 
 
-def make_report_basis(starts: int | None = None, seed: int = 0) -> ReportBasis:
+def make_report_basis(
+    starts: int | None = None, seed: int = 0, scale: Scale = PUBLISHED
+) -> ReportBasis:
     """Return the basis of a report.
 
     Args:
         starts: number of starts per cell; by default each suite's usual number.
         seed: seed of scenes and starts.
+        scale: scale of the robot that the scenes are made for.
     """
-    suites = {name: make_suite(name, starts, seed) for name in REPORTED if name != LARGE}
-    large = make_suite(LARGE, STARTS_PER_SCENE, seed)
+    suites = {
+        name: make_suite(name, starts, seed).scaled(scale) for name in REPORTED if name != LARGE
+    }
+    large = make_suite(LARGE, STARTS_PER_SCENE, seed).scaled(scale)
     like = suites["hole"]  # drawn with as many starts and steps as another suite is judged with
     shown = {
         (suite.name, cell.name, cell.yaw): replace(

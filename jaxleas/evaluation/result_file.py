@@ -6,7 +6,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxleas.configuration import Count, Fraction, NonNegative, Strict
+from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
 from jaxleas.files import read_typed, write_json
 
 VERSION = 1
@@ -109,6 +109,8 @@ class Evaluation(Strict):
     """Refusal of guide paths foreseen to fail: `surrogate` (SHA-256 of its file), `planner`,
     `threshold`."""
     robot: str
+    scale: Positive = 1.0
+    """Length in the scenes for one metre of the published ones; 1 in files of earlier versions."""
     seed: int
     created: str
     """Time of the judging, ISO 8601, UTC."""

@@ -1,11 +1,11 @@
 """Named evaluation suites: cells of scenes, starts and headings never met in training."""
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from jaxleas.evaluation.recipes import RECIPES, Expectation, Recipe, Row
-from jaxleas.terrain import EVALUATION_SEED, SCENARIOS, TUNING_SEED, Scenario
+from jaxleas.terrain import EVALUATION_SEED, SCENARIOS, TUNING_SEED, Scale, Scenario
 from jaxleas.types import InputError
 
 STARTS_PER_SCENE = RECIPES["transitions"].starts_per_scene
@@ -66,6 +66,7 @@ class Suite:
         steps: number of steps after which a roll-out is cut: long enough for all still walking.
         cells: cells of the suite.
         start_seed: seed of the starts' random stream; by default `seed`.
+        scale: length in the scenes for one metre of the published ones [1].
     """
 
     name: str
@@ -73,6 +74,17 @@ class Suite:
     steps: int
     cells: tuple[Cell, ...]
     start_seed: int | None = None
+    scale: float = 1.0
+
+    def scaled(self, scale: Scale) -> "Suite":
+        """Return the same suite with its scenes, starts and goals in the scale of a robot."""
+        scenarios = {id(each): each for cell in self.cells for each in cell.scenarios}
+        made = {identity: each.scaled(scale.leg) for identity, each in scenarios.items()}
+        cells = tuple(
+            replace(cell, scenarios=tuple(made[id(each)] for each in cell.scenarios))
+            for cell in self.cells
+        )
+        return replace(self, cells=cells, scale=self.scale * scale.leg)
 
     def stream(self) -> int:
         """Return the seed used to draw the starts."""
@@ -87,6 +99,8 @@ def make_suite(
     name: str, starts: int | None = None, seed: int = 0, held_out: bool = False
 ) -> Suite:
     """Return a suite: always the same one for the same name, starts and seed.
+
+    Its scenes have the published sizes, which suit Talos; `Suite.scaled` suits them to a robot.
 
     Args:
         name: one of SUITES.

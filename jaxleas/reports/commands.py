@@ -29,6 +29,7 @@ from jaxleas.labels import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
+from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
 
@@ -106,6 +107,7 @@ def evaluate(
         raise InputError(f"--processes is {processes}; give 1 or more")
     refusal = load_refusal(surrogate, threshold, names)
     candidate = load_candidate(run, refusal)
+    chosen = chosen.scaled(scale_for(candidate.env.robot))
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:
@@ -223,7 +225,7 @@ def report(run: Path, out: Path | None = None) -> Path:
         raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
-        basis = make_report_basis()
+        basis = make_report_basis(scale=scale_for(candidate.env.robot))
         evaluations = run_evaluations(candidate, run, basis, reporter.say)
         path = write_report(run, candidate, evaluations, basis, out, reporter.say)
     print(f"written: {path}")

@@ -29,6 +29,11 @@ from .rasterise import DEFAULT_RESOLUTION as DEFAULT_RESOLUTION
 from .rasterise import rasterise as rasterise
 from .reading import READING as READING
 from .reading import Reading as Reading
+from .scale import PUBLISHED as PUBLISHED
+from .scale import Follows as Follows
+from .scale import Scale as Scale
+from .scale import scale_for as scale_for
+from .scale import scaled as scaled
 from .scenarios.catalogue import SCENARIOS as SCENARIOS
 from .scenarios.catalogue import make_scenario as make_scenario
 from .scenarios.catalogue import scene_with_areas as scene_with_areas

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
+from jaxleas.robots import DEFAULT_ROBOT, load_robot
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import generate_arena
@@ -13,6 +14,7 @@ from jaxleas.terrain.importers import import_terrain
 from jaxleas.terrain.mesh_scene import has_polygons, load_scene
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicable
+from jaxleas.terrain.scale import scale_for, scaled
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.terrain.shaping import holes
@@ -70,20 +72,23 @@ def convert(
     return out
 
 
-def generate(*, out: Path, seed: int = 0, rows: int = 5, columns: int = 5) -> Path:
+def generate(
+    *, out: Path, seed: int = 0, rows: int = 5, columns: int = 5, robot: str = DEFAULT_ROBOT
+) -> Path:
     """Generate a random arena of tiles as a scene (.json).
 
     Args:
         out: file of the scene, .json.
         seed: seed of the arena; the same seed gives the same arena.
-        rows: number of tiles of 2 m along y.
-        columns: number of tiles of 2 m along x.
+        rows: number of tiles along y.
+        columns: number of tiles along x.
+        robot: robot that the tiles fit: a name, or the path of its .json; for Talos of 2 m.
     """
     _require_suffix(out, ".json")
     if seed < 0:
         raise InputError(f"seed {seed} must not be negative")
     try:
-        config = GeneratorConfig(rows=rows, columns=columns)
+        config = scaled(GeneratorConfig(rows=rows, columns=columns), scale_for(load_robot(robot)))
     except ValidationError as error:
         first = error.errors()[0]
         raise InputError(f"{first['loc'][0]} = {first['input']}: {first['msg']}") from error
@@ -97,18 +102,19 @@ def generate(*, out: Path, seed: int = 0, rows: int = 5, columns: int = 5) -> Pa
     return out
 
 
-def scenario(name: str, *, out: Path, seed: int = 0) -> Path:
+def scenario(name: str, *, out: Path, seed: int = 0, robot: str = DEFAULT_ROBOT) -> Path:
     """Write a named scenario as a scene (.json) with its start and goal areas.
 
     Args:
         name: name such as hole, stairs_up or long_course; a wrong name prints all of them.
         out: file of the scene, .json.
         seed: seed of the terrain; evaluation begins at 2000000.
+        robot: robot whose leg the terrain fits: a name, or the path of its .json.
     """
     _require_suffix(out, ".json")
     if seed < 0:
         raise InputError(f"seed {seed} must not be negative")
-    scene = scene_with_areas(make_scenario(name, seed))
+    scene = scene_with_areas(make_scenario(name, seed, scale_for(load_robot(robot))))
     write_scene(out, scene)
     print(
         f"{name}, seed {seed}: {len(scene.surfaces)} surfaces, {len(scene.obstacles)} obstacle "

@@ -1,10 +1,15 @@
-"""The configuration of the tile generator (T 3.3.2 and the author's published arenas)."""
+"""The configuration of the tile generator (T 3.3.2 and the author's published arenas).
+
+The defaults are the published sizes, which suit Talos; each length carries what it grows with for
+another robot (`scale.Follows`).
+"""
 
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, PositiveFloat, model_validator
 
 from jaxleas.configuration import Fraction, Strict
+from jaxleas.terrain.scale import Follows
 
 
 def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
@@ -16,6 +21,11 @@ def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
 
 
 Interval = Annotated[tuple[PositiveFloat, PositiveFloat], AfterValidator(_ordered)]
+LegInterval = Annotated[Interval, Follows.LEG]
+WidthInterval = Annotated[Interval, Follows.WIDTH]
+BodyInterval = Annotated[Interval, Follows.BODY]
+SoleInterval = Annotated[Interval, Follows.SOLE]
+LegLength = Annotated[PositiveFloat, Follows.LEG]
 
 
 class ObstaclesConfig(Strict):
@@ -25,22 +35,22 @@ class ObstaclesConfig(Strict):
     """probability that an initial tile carries boxes"""
     count: Annotated[int, Field(ge=1, le=4)] = 1
     """number of boxes per tile, each in a different quarter"""
-    length: Interval = (0.15, 0.5)
+    length: LegInterval = (0.15, 0.5)
     """first side of a box [m]"""
-    width: Interval = (0.15, 0.67)
+    width: LegInterval = (0.15, 0.67)
     """second side of a box [m]"""
-    height: Interval = (0.7, 2.0)
+    height: LegInterval = (0.7, 2.0)
     """height of a box above the tile [m]"""
-    distance: Interval = (0.3, 0.5)
+    distance: WidthInterval = (0.3, 0.5)
     """distance from the tile's centre to the box, along each axis [m]"""
 
 
 class RubbleConfig(Strict):
     """Transition of tilted rectangles."""
 
-    cell: Interval = (0.35, 0.45)
+    cell: SoleInterval = (0.35, 0.45)
     """side of a rectangle [m]"""
-    rise: PositiveFloat = 0.05
+    rise: LegLength = 0.05
     """largest rise from a rectangle's centre to an edge, along each axis [m]"""
 
 
@@ -48,27 +58,27 @@ class BridgeConfig(Strict):
     """Transition over one rectangle, level or sloped."""
 
     wide_probability: Fraction = 0.3
-    wide: Interval = (1.8, 2.0)
+    wide: BodyInterval = (1.8, 2.0)
     """width of a wide bridge [m]"""
-    narrow: Interval = (0.30, 0.45)
+    narrow: WidthInterval = (0.30, 0.45)
     """width of a narrow bridge [m]"""
     sloped_probability: Fraction = 0.5
     """probability that a bridge into an empty cell climbs or falls"""
-    rise: PositiveFloat = 0.15
+    rise: LegLength = 0.15
     """largest climb or fall of a bridge into an empty cell [m]"""
 
 
 class StairsConfig(Strict):
     """Transition of steps with equal risers."""
 
-    climb: Interval = (0.4, 1.0)
+    climb: LegInterval = (0.4, 1.0)
     """height climbed by stairs into an empty cell [m]"""
-    depth: Interval = (0.2, 0.4)
+    depth: SoleInterval = (0.2, 0.4)
     """depth of a step [m]"""
-    width: Interval = (1.67, 2.0)
+    width: BodyInterval = (1.67, 2.0)
     """width of a step [m]"""
-    riser_max: PositiveFloat = 0.2
-    """height of the highest single step [m]: a robot of Talos's size can climb it"""
+    riser_max: LegLength = 0.2
+    """height of the highest single step [m]"""
     slope_max: PositiveFloat = 0.65
     """climb over run of stairs between landings: 33 degrees, as steep as buildings have"""
     landing_probability: Fraction = 0.3
@@ -78,16 +88,16 @@ class StairsConfig(Strict):
 class DetourConfig(Strict):
     """Level transition with something to walk around: a hole in the ground, or a wall across it."""
 
-    length: Interval = (0.3, 1.6)
+    length: LegInterval = (0.3, 1.6)
     """length of the hole along the crossing [m]"""
-    thickness: Interval = (0.15, 0.4)
+    thickness: LegInterval = (0.15, 0.4)
     """thickness of the wall [m]"""
-    height: Interval = (0.7, 2.0)
+    height: LegInterval = (0.7, 2.0)
     """height of the wall above the tile [m]"""
-    width: Interval = (0.5, 1.1)
+    width: LegInterval = (0.5, 1.1)
     """width of the hole or wall across the crossing [m]: from anywhere before it, a way around lies
     within the 0.6 m that a local policy sees to each side"""
-    rim: PositiveFloat = 0.45
+    rim: Annotated[PositiveFloat, Follows.WIDTH] = 0.45
     """smallest width of the ground on either side of the hole [m]"""
 
 
@@ -98,7 +108,7 @@ class GeneratorConfig(Strict):
     """number of tiles along y"""
     columns: Annotated[int, Field(ge=1, le=200)] = 5
     """number of tiles along x"""
-    tile_size: Annotated[float, Field(ge=1.2, le=10.0)] = 2.0
+    tile_size: Annotated[float, Field(ge=1.2, le=10.0), Follows.BODY] = 2.0
     """edge of a tile [m]"""
     inset: Annotated[float, Field(ge=0.0, le=0.02)] = 0.01
     """length by which every contact rectangle is shrunk on each side [m]"""
@@ -112,15 +122,15 @@ class GeneratorConfig(Strict):
     """probability that a transition into an empty cell is stairs"""
     bridge_probability: Fraction = 0.30
     """probability that a transition into an empty cell is a bridge; the others are rubble"""
-    bridge_only_below: PositiveFloat = 0.15
+    bridge_only_below: LegLength = 0.15
     """height difference of two initial tiles below which a bridge joins them [m]"""
-    bridge_below: PositiveFloat = 0.25
+    bridge_below: LegLength = 0.25
     """height difference of two initial tiles below which a bridge or stairs join them [m]"""
-    stairs_below: PositiveFloat = 1.0
+    stairs_below: LegLength = 1.0
     """height difference of two initial tiles below which stairs join them, else nothing [m]"""
-    cliff_above: PositiveFloat = 0.4
+    cliff_above: LegLength = 0.4
     """height difference of neighbouring initial tiles above which they are a dead end [m]"""
-    level_below: PositiveFloat = 0.1
+    level_below: LegLength = 0.1
     """height difference of initial tiles in a row below which they are a flat link [m]"""
     obstacles: ObstaclesConfig = ObstaclesConfig()
     rubble: RubbleConfig = RubbleConfig()

@@ -3,10 +3,18 @@
 from collections.abc import Collection, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from jaxleas.configuration import Layers, is_own, layers_of, load_layers, own_code, validate
-from jaxleas.envs import DEFAULT_TASK, TASKS, Task
+from jaxleas.configuration import (
+    Layers,
+    is_own,
+    layers_of,
+    load_layers,
+    merge,
+    own_code,
+    validate,
+)
+from jaxleas.envs import DEFAULT_TASK, TASKS, Task, TaskConfig
 from jaxleas.training.config import RunConfig
 from jaxleas.types import InputError
 
@@ -18,6 +26,8 @@ def load_run_config(
 ) -> AnyRun:
     """Return the configuration of a run that a YAML file and the command line state together.
 
+    What neither states suits the task, for example its robot (`TaskConfig.suited`).
+
     Args:
         path: the YAML file.
         overrides: command-line arguments such as `--ppo.discount 0.97` (`load_config`).
@@ -28,8 +38,9 @@ def load_run_config(
             line), the key, what was given, and what would do.
     """
     layers = layers_of(path)
-    stated = [("command line", _stated_task(overrides)), *reversed(layers)]
-    return load_layers(_model(stated, allow), layers, overrides)
+    strongest_first = [("command line", _stated_env(overrides)), *reversed(layers)]
+    model = _model(strongest_first, allow)
+    return load_layers(model, _suited(model, strongest_first, layers), overrides)
 
 
 def parse_run_config(document: Any, source: str, allow: Collection[str] = ()) -> AnyRun:
@@ -99,10 +110,21 @@ def _model(strongest_first: Layers, allow: Collection[str]) -> type[AnyRun]:
     return run_config_of(DEFAULT_TASK)
 
 
-def _stated_task(overrides: Sequence[str]) -> dict[str, Any]:
+def _suited(model: type[AnyRun], strongest_first: Layers, layers: Layers) -> Layers:
+    """Return the layers, the weakest completed by what suits the task that they state."""
+    sections = [each["env"] for _, each in strongest_first if isinstance(each.get("env"), dict)]
+    env = cast(type[TaskConfig], model.model_fields["env"].annotation)
+    suited = env.suited({key: value for each in reversed(sections) for key, value in each.items()})
+    (source, weakest), *others = layers
+    return [(source, merge(suited, weakest)), *others]
+
+
+def _stated_env(overrides: Sequence[str]) -> dict[str, Any]:
+    """Return the texts of options `--env.FIELD VALUE`."""
+    env = {}
     for index, option in enumerate(overrides):
         name, equals, value = option.partition("=")
-        if name == "--env.task":
+        if name.startswith("--env."):
             value = value if equals else next(iter(overrides[index + 1 : index + 2]), "")
-            return {"env": {"task": value}}
-    return {}
+            env[name.removeprefix("--env.")] = value
+    return {"env": env} if env else {}

@@ -12,6 +12,7 @@ from jaxleas.evaluation.suites import (
     scene_seeds,
 )
 from jaxleas.reports import published
+from jaxleas.terrain import PUBLISHED, Scale
 from jaxleas.terrain.seeds import EVALUATION_SEED, HELD_OUT_SEED, MAX_TRAINING_SEED, TUNING_SEED
 from jaxleas.types import InputError
 
@@ -35,6 +36,18 @@ def test_the_same_name_starts_and_seed_give_the_same_scenes(name):
     shifted = vertices(make_suite(name, 40, seed=1))
     same = [np.array_equal(a, b) for a, b in zip(vertices(one), shifted, strict=False)]
     assert not all(same) or len(shifted) != len(vertices(one))
+
+
+def test_a_suite_for_a_small_robot_is_the_same_one_made_small():
+    suite = make_suite("transitions", 40)
+    assert [id(each) for each in vertices(suite.scaled(PUBLISHED))] == [*map(id, vertices(suite))]
+    half = suite.scaled(Scale(0.5, 0.7, 0.6))
+    assert (suite.scale, half.scale) == (1.0, 0.5)
+    for whole, small in zip(vertices(suite), vertices(half), strict=True):
+        np.testing.assert_array_equal(small, 0.5 * whole)
+    ahead, backwards = (cell for cell in half.cells if cell.name == "bridge")
+    assert ahead.scenarios[0] is backwards.scenarios[0]  # rasterised once
+    assert (half.seed, half.steps, half.stream()) == (suite.seed, suite.steps, suite.stream())
 
 
 def test_footsteps_are_those_cells_of_the_thesis_that_chapter_5_asks_about():

@@ -3,6 +3,7 @@
 import pytest
 
 from jaxleas.configuration.loading import to_yaml
+from jaxleas.terrain import GeneratorConfig
 from jaxleas.training.run_config import load_run_config, make_task
 from jaxleas.training.worlds import training_world
 from jaxleas.types import InputError
@@ -47,3 +48,32 @@ def test_training_terrain_never_reaches_into_the_seeds_of_evaluation():
     terrain = config.terrain.model_copy(update={"first_seed": 900_000})
     with pytest.raises(InputError, match="kept for evaluation"):
         training_world(config.model_copy(update={"terrain": terrain}), make_task(config))
+
+
+def test_what_no_one_states_suits_the_robot(tmp_path):
+    (tmp_path / "g1.yaml").write_text("env: {robot: g1}\nterrain: {arenas: 3}\n")
+    config = load_run_config(
+        tmp_path / "g1.yaml", ["--terrain.generator.stairs.climb", "[0.3, 0.4]"]
+    )
+    generator = config.terrain.generator
+    assert config.terrain.arenas == 3
+    assert (config.env.height_low, config.env.height_high) == (-1.032, -0.147)
+    assert (generator.tile_size, generator.stairs.riser_max) == (1.474, 0.147)
+    assert generator.stairs.climb == (0.3, 0.4)  # as stated
+    chosen = load_run_config(ROOT / "configs" / "leas_p1.yaml", ["--env.robot=g1"])
+    assert chosen.terrain.generator.tile_size == 1.474
+    plain = load_run_config(ROOT / "configs" / "leas_p1.yaml")
+    assert plain.terrain.generator == GeneratorConfig()
+
+
+def test_a_run_folder_keeps_the_numbers_that_it_was_made_with(tmp_path):
+    stated = load_run_config(ROOT / "configs" / "leas_p1.yaml")
+    env = stated.env.model_copy(update={"robot": "g1"})
+    before = stated.model_copy(update={"env": env})  # as an earlier version wrote it
+    (tmp_path / "config.yaml").write_text(to_yaml(before))
+    assert load_run_config(tmp_path / "config.yaml") == before
+
+
+def test_a_run_of_a_robot_that_is_not_here_can_be_read(tmp_path):
+    (tmp_path / "run.yaml").write_text("env: {robot: robots/lent.json, height_low: -0.9}\n")
+    assert load_run_config(tmp_path / "run.yaml").env.height_low == -0.9

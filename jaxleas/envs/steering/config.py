@@ -12,6 +12,8 @@ from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
 from jaxleas.envs import Ball, Interval, Mirror, Normal, Part, Signature, TaskConfig, WorldsConfig
 from jaxleas.envs.steering.layout import MIRROR_ACTION_SIGN, layout_named
 from jaxleas.envs.steering.scaling import affine_scaling
+from jaxleas.envs.steering.suited import HIGHEST, LOWEST, suited_to
+from jaxleas.robots import DEFAULT_ROBOT, load_robot
 from jaxleas.terrain import Entry as TerrainEntry
 from jaxleas.terrain import GeneratorConfig
 from jaxleas.terrain import pinned as pinned_files
@@ -116,14 +118,15 @@ class SteeringConfig(TaskConfig):
     moved: ClassVar[Mapping[str, str]] = {"ppo.final_failure": "env.reward.final_failure"}
 
     task: Literal["steering"] = "steering"  # type: ignore[assignment]
-    robot: str = "talos"
-    """Name of the robot."""
+    robot: str = DEFAULT_ROBOT
+    """Name of the robot. For another one than Talos, configurations have other defaults: heights
+    seen from the root, and the sizes of the generator's terrain."""
     observation: Literal["thesis144", "thesis145", "icra81"] = "thesis144"
     """Layout of the local height map: 10 x 14 (T table 3.1), the same and the number of surfaces
     around the robot (T 5.2.3), or 11 x 7 (I sec. III)."""
-    height_low: float = -1.4
+    height_low: float = LOWEST
     """Lower bound z_min to which heights are clipped [m], relative to the root."""
-    height_high: float = -0.2
+    height_high: float = HIGHEST
     """Upper bound z_max to which heights are clipped [m], relative to the root."""
     desired_speed: Positive = 0.1
     """Speed at which the root should move towards the goal, v_desired [m/s]."""
@@ -144,6 +147,22 @@ class SteeringConfig(TaskConfig):
     --allow must repeat on the command line."""
     limits: MotionLimits = MotionLimits()
     reward: RewardWeights = RewardWeights()
+
+    @classmethod
+    def suited(cls, stated: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the heights and the terrain that suit the robot."""
+        robot = stated.get("robot", DEFAULT_ROBOT)
+        return suited_to(robot) if isinstance(robot, str) else {}
+
+    @classmethod
+    def for_robot(cls, robot: str) -> Self:
+        """Return the default configuration for a robot.
+
+        Raises:
+            InputError: there is no such robot, or its file does not describe it.
+        """
+        load_robot(robot)
+        return cls(robot=robot, **suited_to(robot).get("env", {}))
 
     def signature(self) -> Signature:
         """Return the signature: the layout's observation; acceleration and turn rate as action."""

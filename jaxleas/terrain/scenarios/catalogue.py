@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from jaxleas.terrain.links import Area
+from jaxleas.terrain.scale import PUBLISHED, Scale
 from jaxleas.terrain.scenarios.courses import circuit, long_course, rotation
 from jaxleas.terrain.scenarios.detours import dead_end, hole, hole_rim, wall
 from jaxleas.terrain.scenarios.scenario import Scenario, around
@@ -46,8 +47,13 @@ and what is chosen here. All are walked in the direction of +x (the circuit begi
 always the same for the same name and seed."""
 
 
-def make_scenario(name: str, seed: int) -> Scenario:
+def make_scenario(name: str, seed: int, scale: Scale = PUBLISHED) -> Scenario:
     """Return a scenario by its name.
+
+    Args:
+        name: name of the scenario, one of `SCENARIOS`.
+        seed: seed of its random lengths.
+        scale: scale of the robot that walks there; all lengths grow with its leg.
 
     Raises:
         InputError: there is no scenario of that name.
@@ -56,7 +62,7 @@ def make_scenario(name: str, seed: int) -> Scenario:
         close = difflib.get_close_matches(name, SCENARIOS, n=1, cutoff=0.5)
         hint = f"did you mean {close[0]!r}? There are" if close else "there are"
         raise InputError(f"no scenario is called {name!r}; {hint} {', '.join(SCENARIOS)}")
-    return SCENARIOS[name](seed)
+    return SCENARIOS[name](seed).scaled(scale.leg)
 
 
 def scene_with_areas(scenario: Scenario) -> Scene:

@@ -1,8 +1,8 @@
 """A terrain with a task, and the parts of which named terrains are built."""
 
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,27 @@ class Scenario:
     goal_area: Area
     waypoints: tuple[tuple[float, float], ...] = ()
     crossing: bool = True
+
+    def scaled(self, factor: float) -> "Scenario":
+        """Return the same terrain and task with every length multiplied; 1 returns this one.
+
+        Args:
+            factor: factor, such as `Scale.leg` for a robot [1].
+        """
+        if factor == 1.0:
+            return self
+        scene = self.scene
+        return replace(
+            self,
+            scene=replace(
+                scene,
+                surfaces=_multiplied(scene.surfaces, factor),
+                obstacles=_multiplied(scene.obstacles, factor),
+            ),
+            start_areas=tuple(_area(each, factor) for each in self.start_areas),
+            goal_area=_area(self.goal_area, factor),
+            waypoints=tuple((factor * x, factor * y) for x, y in self.waypoints),
+        )
 
 
 def random_stream(name: str, seed: int) -> np.random.Generator:
@@ -90,6 +111,15 @@ def near_and_far(edge: float, nearest: float = NEAR[0]) -> tuple[Area, Area]:
 def around(x: float, y: float, half: float) -> Area:
     """Return the square of edge 2 x `half` around a point [m]."""
     return x - half, x + half, y - half, y + half
+
+
+def _multiplied(polygons: Mapping[str, np.ndarray], factor: float) -> dict[str, np.ndarray]:
+    return {name: factor * vertices for name, vertices in polygons.items()}
+
+
+def _area(area: Area, factor: float) -> Area:
+    x_min, x_max, y_min, y_max = area
+    return factor * x_min, factor * x_max, factor * y_min, factor * y_max
 
 
 def _corners(area: Area, inset: float) -> np.ndarray:

@@ -7,7 +7,6 @@ from jaxleas.terrain.polygons import box_faces
 from jaxleas.terrain.tiles.initial import flat_tile
 from jaxleas.terrain.tiles.tile import TileFrame, TilePolygons
 
-
 _WALL_NEAR = 0.5  # largest distance of a wall from the entry edge [m]
 
 
