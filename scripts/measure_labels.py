@@ -23,6 +23,7 @@ from jaxleas.envs.steering import SteeringEnv
 from jaxleas.files import write_json
 from jaxleas.guide import Trips, leas, load_policy, paths, roll_out
 from jaxleas.labels import Judge
+from jaxleas.robots import load_robot
 from jaxleas.terrain import (
     HELD_OUT_SEED,
     Area,
@@ -35,6 +36,8 @@ from jaxleas.terrain import (
     transition,
 )
 from jaxleas.types import GuidePath, RootMotion
+
+TALOS = load_robot("talos")
 
 SEED = HELD_OUT_SEED + 500_000  # far from the terrain that checkpoints are chosen on
 SCENES, EACH = 4, 10
@@ -119,13 +122,16 @@ def measure(walks: dict[str, Walks], processes: int, rounds: int, out: Path) -> 
     """Measure, planner after planner, and write the figures so far after each."""
     found = []
     scene, path = longest(walks["stairs_up"], 4.0)
-    plan_contacts(scene, path)  # makes the data base
-    times = [_timed(lambda: plan_contacts(scene, path)) / path.length * 4.0 for _ in range(rounds)]
+    plan_contacts(scene, path, robot=TALOS)  # makes the data base
+    times = [
+        _timed(lambda: plan_contacts(scene, path, robot=TALOS)) / path.length * 4.0
+        for _ in range(rounds)
+    ]
     found.append(_figure("labels/sampling/4_m_of_stairs", 1e3 * statistics.median(times), "ms",
                          "lower", rounds, 150.0))  # fmt: skip
     print(f"4 m of stairs: {found[0]['value']:.0f} ms")
     for planner in ("sampling", "mip", "sl1m"):
-        with Judge(planner, processes=processes) as judge:
+        with Judge(planner, processes=processes, robot="talos") as judge:
             warm = walks["flat"]
             judge.judge(warm.scenes, warm.paths, warm.scene_index)
             for kind, some in walks.items():

@@ -74,7 +74,8 @@ def main() -> None:
     curves = {}
     walks = disturbed(env, Path(given.labels), surrogate)
     curves[f"disturbed walks ({len(walks.reached)})"] = as_json(sweep(walks, THRESHOLDS))
-    with Judge(identity.planner, settings, processes=os.cpu_count() or 1) as judge:
+    cores, robot = os.cpu_count() or 1, policy.config.robot
+    with Judge(identity.planner, settings, processes=cores, robot=robot) as judge:
         for title, method, suites, starts in (
             ("LEAS-P1", leas(env, policy), LEAS_SUITES, given.starts),
             ("RB-Kino", kino, KINO_SUITES, given.kino_starts),

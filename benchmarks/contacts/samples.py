@@ -11,8 +11,11 @@ import numpy as np
 
 from benchmarks.contacts.rows import Row
 from jaxleas.contacts import SamplingSettings, plan_contacts
+from jaxleas.robots import load_robot
 from jaxleas.terrain import Scene, transition
 from jaxleas.types import GuidePath
+
+TALOS = load_robot("talos")
 
 SAMPLES = (1_000, 2_500, 5_000, 10_000, 25_000, 50_000)
 KEPT = (1, 3, 5, 7, 10)  # configurations, 2 cm apart, from one kept to the next
@@ -62,8 +65,8 @@ def _rows(name: str, samples: int, kept: int, count: int) -> Iterator[Row]:
     for number, seed in enumerate(TERRAIN_SEEDS):
         settings = SamplingSettings(samples=samples, seed=number, keep_every=kept)
         scene, guides = guides_up_stairs(seed, count)
-        plan_contacts(scene, guides[0], settings)  # makes the database
-        plans = [plan_contacts(scene, guide, settings) for guide in guides]
+        plan_contacts(scene, guides[0], settings, robot=TALOS)  # makes the database
+        plans = [plan_contacts(scene, guide, settings, robot=TALOS) for guide in guides]
         success.append(100.0 * float(np.mean([plan.reached for plan in plans])))
         whole = [1000.0 * plan.seconds for plan in plans if plan.success]
         times += [float(np.mean(whole))] if whole else []

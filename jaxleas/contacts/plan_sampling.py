@@ -16,7 +16,7 @@ from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings
 from jaxleas.contacts.sampling.case import make_case
 from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.contacts.surfaces import make_surface
-from jaxleas.robots import Robot, load_robot
+from jaxleas.robots import Robot
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
@@ -30,7 +30,7 @@ def plan_sampling(
     settings: SamplingSettings | None = None,
     *,
     time_limit: float = math.inf,
-    robot: Robot | None = None,
+    robot: Robot,
 ) -> ContactPlan:
     """Plan a robot's contacts along a guide path (T 4.1): acyclic, follows the guide exactly.
 
@@ -43,14 +43,14 @@ def plan_sampling(
         settings: settings of the planner.
         time_limit: time limit, counted once the data base is made [s]; after it the plan's
             status is "time_limit".
-        robot: robot with two legs or more; Talos by default.
+        robot: robot with two legs or more.
 
     Raises:
         InputError: the guide or the scene cannot be used, or the guide leaves the scene.
         PlannerError: a bug of ours: the plan fails its certificate.
     """
     require_time_limit(time_limit)
-    settings, robot = settings or SamplingSettings(), robot or load_robot("talos")
+    settings = settings or SamplingSettings()
     case = make_case(robot, [scene], settings)
     feet = robot.foot_names
     begin = time.perf_counter()
@@ -100,7 +100,7 @@ def contact_plan(found: SamplingPlan, feet: Sequence[str], gap: float) -> Contac
 
 
 def problem_of_steps(
-    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
+    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot
 ) -> ContactProblem:
     """Return the steps of a sampling plan as a contact problem, each with the surface it used.
 
@@ -110,9 +110,9 @@ def problem_of_steps(
         plan: plan from `plan_sampling`.
         guide: guide path that the plan follows.
         scene: scene that the plan crosses.
-        robot: robot that the plan is for; Talos by default.
+        robot: robot that the plan is for.
     """
-    robot, postures = robot or load_robot("talos"), plan.postures or ()
+    postures = plan.postures or ()
     return ContactProblem(
         robot=robot.name,
         model="feet",

@@ -16,7 +16,7 @@ from jaxleas.contacts.posture import Posture
 from jaxleas.contacts.posture_balance import two_point_margin
 from jaxleas.contacts.posture_model import Stood, stand
 from jaxleas.dynamics import ContactPoints, exact_robustness
-from jaxleas.robots import Robot, load_robot
+from jaxleas.robots import Robot
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError
 
@@ -59,7 +59,7 @@ class PostureCertificate:
 
 
 def certify_postures(
-    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot | None = None
+    plan: ContactPlan, guide: GuidePath, scene: Scene, robot: Robot
 ) -> PostureCertificate:
     """Recompute every constraint on the postures of a sampling plan.
 
@@ -73,12 +73,11 @@ def certify_postures(
         plan: plan with postures.
         guide: guide path that the plan follows.
         scene: scene that the plan crosses.
-        robot: robot that the plan is for; Talos by default.
+        robot: robot that the plan is for.
 
     Raises:
         InputError: the plan does not belong to this guide, scene and robot.
     """
-    robot = robot or load_robot("talos")
     postures = _require_fitting(plan, guide, scene, robot)
     worst, least, error = Violation(-math.inf, 0, ""), math.inf, 0.0
     before: tuple[Posture, Stood] | None = None

@@ -46,7 +46,7 @@ class Sampling(Planner):
     def judge(self, asked: AskedGuides, settings: SamplingSettings) -> list[Verdict]:
         """Judge guide paths, all together."""
         robot = load_robot(asked.robot)
-        plans = plan_over(asked.scenes, asked.paths, asked.scene_index, settings, robot)
+        plans = plan_over(asked.scenes, asked.paths, asked.scene_index, settings, robot=robot)
         return [
             _verdict(number, path, plan)
             for (number, _, path), plan in zip(asked, plans, strict=True)

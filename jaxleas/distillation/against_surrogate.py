@@ -60,7 +60,7 @@ class AgainstSurrogate:
                 Collection(
                     policy, self._surrogate, place.config.collect, place.config.seed + number
                 ),
-                Oracle(place.config.planner, place.labelling, place.run_config.env.robot),
+                Oracle(place.config.planner, place.labelling, robot=place.run_config.env.robot),
                 place.workers,
                 lambda done, total: say(
                     f"round {number}: {done} of {total} guide paths judged", passing=True

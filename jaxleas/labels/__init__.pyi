@@ -19,7 +19,6 @@ from .own_planners import WorkerError as WorkerError
 from .own_planners import Workers as Workers
 from .planners import ask as ask
 from .planners import judge as judge
-from .planners import judge_over as judge_over
 from .settings import settings_of as settings_of
 from .settings import with_parameters as with_parameters
 from .shards import Shard as Shard

@@ -92,7 +92,7 @@ def label(
     begun = perf_counter()
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
-    oracle = Oracle(planner, settings, robot)
+    oracle = Oracle(planner, settings, robot=robot)
     shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)

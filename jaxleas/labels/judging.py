@@ -9,7 +9,6 @@ import numpy as np
 
 from jaxleas.contacts import PLANNERS, AskedGuides, PlannerSettings, find_planner, require_settings
 from jaxleas.labels.planners import ask
-from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, InputError, Verdict
 from jaxleas.workers import Workers, workers_for
@@ -41,7 +40,7 @@ def planner_workers(count: int) -> Workers:
 class Judge:
     """An exact planner and the workers that run it; start-up is paid once.
 
-        with Judge("mip", processes=2) as judge:
+        with Judge("mip", processes=2, robot="talos") as judge:
             verdicts = judge.judge(scenes, paths, scene_index)
 
     Attributes:
@@ -56,7 +55,8 @@ class Judge:
         settings: PlannerSettings | None = None,
         processes: int = 1,
         workers: Workers | None = None,
-        robot: str = DEFAULT_ROBOT,
+        *,
+        robot: str,
     ) -> None:
         """Choose planner and workers.
 

@@ -55,7 +55,9 @@ def judge_shard(shard: Shard) -> int:
         asked = shard.asked
         scene = load_scene(asked.scene)
         paths = read_guide_paths(asked.guides).paths[shard.first : shard.last]
-        verdicts = judge(asked.planner, scene, paths, asked.settings, shard.first, asked.robot)
+        verdicts = judge(
+            asked.planner, scene, paths, asked.settings, shard.first, robot=asked.robot
+        )
         write_shard(shard, verdicts)
     return len(shard)
 

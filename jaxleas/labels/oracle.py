@@ -1,9 +1,8 @@
 """An exact planner as a question is put to it: its name, its settings, and a robot."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from jaxleas.contacts import Planner, PlannerSettings, find_planner, require_settings
-from jaxleas.robots import DEFAULT_ROBOT
 
 
 @dataclass(frozen=True)
@@ -18,7 +17,7 @@ class Oracle:
 
     planner: str
     settings: PlannerSettings | None = None
-    robot: str = DEFAULT_ROBOT
+    robot: str = field(kw_only=True)
 
     def find(self) -> tuple[Planner, PlannerSettings]:
         """Return the planner and its settings, every one stated.

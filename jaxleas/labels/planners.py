@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from jaxleas.contacts import AskedGuides, PlannerSettings, find_planner, require_settings
-from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, Verdict
 
@@ -14,7 +13,8 @@ def judge(
     guide_paths: Sequence[GuidePath],
     settings: PlannerSettings | None = None,
     first: int = 0,
-    robot: str = DEFAULT_ROBOT,
+    *,
+    robot: str,
 ) -> list[Verdict]:
     """Ask an exact planner about guide paths over one scene.
 
@@ -30,31 +30,6 @@ def judge(
         InputError: planner and settings do not fit, or a guide path cannot be used.
     """
     asked = AskedGuides(robot, [scene], guide_paths, [0] * len(guide_paths), first)
-    return ask(planner, asked, settings)
-
-
-def judge_over(
-    planner: str,
-    scenes: Sequence[Scene],
-    guide_paths: Sequence[GuidePath],
-    scene_index: Sequence[int],
-    settings: PlannerSettings | None = None,
-    first: int = 0,
-) -> list[Verdict]:
-    """Ask an exact planner about guide paths of Talos, each over one of several scenes.
-
-    Args:
-        planner: name of a planner, or MODULE:CLASS of your own, which this call imports.
-        scenes: scenes to walk on.
-        guide_paths: guide paths to be judged.
-        scene_index: index of each guide path's scene.
-        settings: settings of the planner; its defaults if None.
-        first: number of the first guide path.
-
-    Returns:
-        Verdicts in the order of the guide paths.
-    """
-    asked = AskedGuides(DEFAULT_ROBOT, scenes, guide_paths, scene_index, first)
     return ask(planner, asked, settings)
 
 

@@ -32,7 +32,7 @@ class Asked:
     scene: Path
     planner: str
     settings: PlannerSettings
-    robot: str = DEFAULT_ROBOT
+    robot: str
 
     def provenance(self) -> dict[str, Any]:
         """Return the provenance of verdicts, as written into their files."""

@@ -52,9 +52,12 @@ def test_two_com_is_chosen_where_it_can_be(here) -> None:
 
 
 def test_settings_are_recorded_as_they_were_for_a_robot_with_both_models() -> None:
-    _, settings = Oracle("mip").find()
+    _, settings = Oracle("mip", robot="talos").find()
     assert settings.model_dump(mode="json")["model"] == "two_com"
-    assert Oracle("mip", MipSettings(model="feet")).find()[1].model_dump()["model"] == "feet"
+    assert (
+        Oracle("mip", MipSettings(model="feet"), robot="talos").find()[1].model_dump()["model"]
+        == "feet"
+    )
 
 
 @pytest.mark.parametrize(

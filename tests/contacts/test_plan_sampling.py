@@ -17,17 +17,19 @@ from jaxleas.contacts.posture_model import about, chain
 from jaxleas.contacts.problem import FootPose
 from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.files import write_json, write_npz
-from jaxleas.robots import load_talos
+from jaxleas.robots import load_robot, load_talos
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
+
+TALOS = load_robot("talos")
 
 GUIDE, SCENE = straight(2.4, climbing=True), stairs()
 
 
 @pytest.fixture(scope="module")
 def climb():
-    return plan_sampling(GUIDE, SCENE)
+    return plan_sampling(GUIDE, SCENE, robot=TALOS)
 
 
 @pytest.fixture
@@ -53,7 +55,7 @@ def test_a_plan_says_where_each_step_goes(climb) -> None:
     assert [each.configuration for each in climb.postures][:: len(climb.postures) - 1] == [0, 120]
     assert len(climb.robustness) == len(climb.postures)
     assert min(climb.robustness) >= 2.0
-    made = problem_of_steps(climb, GUIDE, SCENE)
+    made = problem_of_steps(climb, GUIDE, SCENE, TALOS)
     for phase, name, point in zip(made.steps, climb.surfaces, climb.footholds, strict=True):
         assert phase.candidates == (name,)
         assert float(made.surfaces[name].distance(point)) < 1e-9
@@ -84,21 +86,23 @@ def with_shifted_foot(plan, foot: str, shift: list[float], first: int = 1):
     ],
 )
 def test_a_foot_that_is_elsewhere_is_seen(climb, shift: list[float], words: str) -> None:
-    certificate = certify_postures(with_shifted_foot(climb, "LF", shift), GUIDE, SCENE)
+    certificate = certify_postures(with_shifted_foot(climb, "LF", shift), GUIDE, SCENE, TALOS)
     assert not certificate.certified
     assert re.search(words, certificate.complaint), certificate.complaint
 
 
 def test_a_foot_beyond_the_edge_is_seen(climb) -> None:
     narrow = {name: each * [1.0, 0.01, 1.0] for name, each in SCENE.surfaces.items()}
-    complaint = certify_postures(climb, GUIDE, replace(SCENE, surfaces=narrow)).complaint
+    complaint = certify_postures(
+        climb, GUIDE, replace(SCENE, surfaces=narrow), robot=TALOS
+    ).complaint
     assert "within the surface's edges" in complaint
 
 
 def test_a_leg_that_is_too_short_is_seen(climb) -> None:
     """The same footholds under a guide that walks 0.15 m higher."""
     higher = replace(GUIDE, position=GUIDE.position + np.array([0.0, 0.0, 0.15]))
-    certificate = certify_postures(climb, higher, SCENE)
+    certificate = certify_postures(climb, higher, SCENE, TALOS)
     assert "reach of" in certificate.complaint or "centre of mass" in certificate.complaint
     assert certificate.worst.metres > 0.01
 
@@ -107,9 +111,14 @@ def test_a_wrong_centre_of_mass_or_robustness_is_seen(climb) -> None:
     postures = list(climb.postures)
     postures[3] = replace(postures[3], com=postures[3].com + np.array([0.0, 0.0, 0.02]))
     lean = with_postures(climb, postures)
-    assert "centre of mass in posture 3 by 0.02 m" in certify_postures(lean, GUIDE, SCENE).complaint
+    assert (
+        "centre of mass in posture 3 by 0.02 m"
+        in certify_postures(lean, GUIDE, SCENE, TALOS).complaint
+    )
     bold = climb.but(robustness=(*climb.robustness[:-1], 2.0 * climb.robustness[-1]))
-    assert "states a robustness that is wrong" in certify_postures(bold, GUIDE, SCENE).complaint
+    assert (
+        "states a robustness that is wrong" in certify_postures(bold, GUIDE, SCENE, TALOS).complaint
+    )
 
 
 @pytest.mark.parametrize(
@@ -122,19 +131,19 @@ def test_a_wrong_centre_of_mass_or_robustness_is_seen(climb) -> None:
 )
 def test_a_plan_that_is_none_is_refused(climb, change: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        certify_postures(climb.but(**change), GUIDE, SCENE)
+        certify_postures(climb.but(**change), GUIDE, SCENE, TALOS)
 
 
 def test_a_plan_for_another_guide_or_scene_is_refused(climb) -> None:
     with pytest.raises(InputError, match="does not follow this guide with 51"):
-        certify_postures(climb, straight(1.0), SCENE)
+        certify_postures(climb, straight(1.0), SCENE, TALOS)
     with pytest.raises(InputError, match="perhaps it is for another guide"):
-        certify_postures(climb, straight(3.0, climbing=True), SCENE)
+        certify_postures(climb, straight(3.0, climbing=True), SCENE, TALOS)
     with pytest.raises(InputError, match="stands on 'bottom', not in this scene"):
-        certify_postures(climb, GUIDE, flat())
+        certify_postures(climb, GUIDE, flat(), TALOS)
     held = replace(SCENE, touch={"bottom": "palms"})
     with pytest.raises(InputError, match="stands on 'bottom', which feet may not touch"):
-        certify_postures(climb, GUIDE, held)
+        certify_postures(climb, GUIDE, held, TALOS)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -154,12 +163,12 @@ def test_the_joint_by_joint_chain_is_the_legs_kinematics(side: float) -> None:
 
 
 def test_what_was_reached_is_kept_where_the_walk_stops() -> None:
-    plan = plan_sampling(straight(4.0), hole())
+    plan = plan_sampling(straight(4.0), hole(), robot=TALOS)
     assert (plan.feasible, plan.status) == (False, "not_found")
     assert "neither foot finds a contact" in plan.reason
     assert 0 < plan.postures[-1].configuration < 200
     assert plan.max_violation <= 1e-6
-    aside = plan_sampling(straight(4.0, y=2.9), hole())
+    aside = plan_sampling(straight(4.0, y=2.9), hole(), robot=TALOS)
     assert (aside.status, aside.last_feasible_phase, aside.max_violation) == ("not_found", -1, None)
 
 
@@ -170,29 +179,29 @@ def test_why_neither_foot_moved_is_explained_whatever_the_words(monkeypatch) -> 
         "_stop",
         lambda self, guide, ending, reason: stop(self, guide, ending, "besetzt"),
     )
-    plan = plan_sampling(straight(4.0), hole())
+    plan = plan_sampling(straight(4.0), hole(), robot=TALOS)
     assert re.search("besetzt: LF .*; RF ", plan.reason)
-    assert plan_sampling(straight(4.0), flat(), time_limit=1e-9).status == "time_limit"
+    assert plan_sampling(straight(4.0), flat(), time_limit=1e-9, robot=TALOS).status == "time_limit"
 
 
 def test_a_guide_that_leaves_the_scene_is_refused() -> None:
     with pytest.raises(InputError, match="leaves the scene: configuration 426, with its root at"):
-        plan_sampling(straight(9.0), flat())
+        plan_sampling(straight(9.0), flat(), robot=TALOS)
 
 
 def test_late_is_late_and_not_a_verdict() -> None:
-    plan = plan_sampling(straight(4.0), flat(), time_limit=1e-9)
+    plan = plan_sampling(straight(4.0), flat(), time_limit=1e-9, robot=TALOS)
     assert (plan.feasible, plan.status) == (False, "time_limit")
     expected = "not decided within the time limit of 1e-09 s: stopped at configuration 0"
     assert plan.reason.startswith(expected)
     with pytest.raises(InputError, match="positive number of seconds"):
-        plan_sampling(straight(4.0), flat(), time_limit=0.0)
+        plan_sampling(straight(4.0), flat(), time_limit=0.0, robot=TALOS)
 
 
 def test_a_plan_survives_its_file(climb, tmp_path) -> None:
     write_plan(tmp_path / "plan.json", climb)
     read = read_plan(tmp_path / "plan.json")
-    assert certify_postures(read, GUIDE, SCENE).certified
+    assert certify_postures(read, GUIDE, SCENE, TALOS).certified
     assert read.robustness == climb.robustness
     assert [each.how for each in read.postures] == [each.how for each in climb.postures]
 

@@ -139,7 +139,7 @@ def test_no_wave_ahead_means_nothing_is_older_than_its_batch(training, ground):
 def test_when_workers_die_the_training_is_the_same(training):
     def with_workers(on_call):
         workers = ProcessWorkers(2)
-        judge = Judge("sl1m", workers=workers)
+        judge = Judge("sl1m", workers=workers, robot="talos")
         whole = judge.judge
 
         def watched(*arguments):

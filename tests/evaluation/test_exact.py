@@ -138,7 +138,7 @@ def test_the_sampling_planner_follows_a_walk_but_no_leap(env, flat_suite):
         "fly": walker(env, Fly()),
         "rb_lin": walker(env, rb_lin(env.config.limits, env.config.desired_speed)),
     }
-    with Judge("sampling", SamplingSettings(samples=4000)) as planner:
+    with Judge("sampling", SamplingSettings(samples=4000), robot="talos") as planner:
         leap, steps = judge_exact(env, walkers, suite, {"sampling": planner})
     assert leap.reached == steps.reached == 1.0
     assert (leap.planned, steps.planned) == (0.0, 1.0)

@@ -40,7 +40,7 @@ def test_a_policy_that_knows_its_planner_is_planned_for(planner, name, cells):
     env = SteeringEnv(policy.config)
     suite = suite_of(name, 10)
     suite = replace(suite, cells=tuple(each for each in suite.cells if each.name in cells))
-    with Judge(planner) as judge:
+    with Judge(planner, robot="talos") as judge:
         results = judge_exact(env, {"p2": walker(env, leas(env, policy))}, suite, {planner: judge})
     # 98 % in the worst of these cells: one miss a cell, and two in all, are within chance.
     missed = [round(each.starts * (1.0 - (each.planned or 0.0))) for each in results]

@@ -25,14 +25,14 @@ def answer(verdict):
 @pytest.fixture(scope="module")
 def expected():
     return [
-        answer(replace(judge("sl1m", SCENES[index], [path])[0], path=number))
+        answer(replace(judge("sl1m", SCENES[index], [path], robot="talos")[0], path=number))
         for number, (path, index) in enumerate(zip(PATHS, INDEX, strict=True))
     ]
 
 
 def test_many_scenes_in_one_call_in_order(expected):
     counted = []
-    with Judge("sl1m") as bench:
+    with Judge("sl1m", robot="talos") as bench:
         verdicts = bench.judge(SCENES, PATHS, INDEX, counted.append)
         assert bench.judge(SCENES, [], []) == []
     assert [answer(verdict) for verdict in verdicts] == expected
@@ -42,7 +42,7 @@ def test_many_scenes_in_one_call_in_order(expected):
 
 def test_workers_stay_between_calls_and_the_work_of_one_that_dies_is_done_again(expected):
     workers = ProcessWorkers(2)
-    with Judge("sl1m", workers=workers) as bench:
+    with Judge("sl1m", workers=workers, robot="talos") as bench:
         assert list(map(answer, bench.judge(SCENES, PATHS, INDEX))) == expected
         team = workers.pids
         counted = []
@@ -135,12 +135,12 @@ def test_an_interrupt_ends_the_busy_and_the_next_call_works(workers, tmp_path):
 
 def test_bad_input_is_one_sentence():
     with pytest.raises(InputError, match="there is no planner 'magic'"):
-        Judge("magic")
+        Judge("magic", robot="talos")
     with pytest.raises(InputError, match="takes SamplingSettings, not MipSettings"):
-        Judge("sampling", MipSettings())
+        Judge("sampling", MipSettings(), robot="talos")
     with pytest.raises(InputError, match="--processes is 0"):
-        Judge("mip", processes=0)
-    bench = Judge("mip", workers=Here())
+        Judge("mip", processes=0, robot="talos")
+    bench = Judge("mip", workers=Here(), robot="talos")
     with pytest.raises(InputError, match="2 guide paths need as many scene indices"):
         bench.judge(SCENES, PATHS[:2], [0])
     with pytest.raises(InputError, match="guide path 1 is over scene 2; there are 2 scenes"):

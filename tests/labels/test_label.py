@@ -17,9 +17,12 @@ from jaxleas.labels import (
     read_verdicts,
 )
 from jaxleas.labels.commands import label
+from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import hole, straight
+
+TALOS = load_robot("talos")
 
 SETTINGS = SamplingSettings()
 
@@ -36,7 +39,7 @@ def shards_of(folder, settings=SETTINGS):
     return plan_shards(
         [folder / "walks.npz"],
         folder / "hole.json",
-        Oracle("sampling", settings),
+        Oracle("sampling", settings, robot="talos"),
         folder / "out",
         2,
     )
@@ -50,7 +53,7 @@ def test_verdicts_are_those_of_the_planner_with_provenance(work):
     found = read_verdicts(folder / "out")
     assert [verdict.path for _, verdict in found] == list(range(5))
     for path, (provenance, verdict) in zip(paths, found, strict=True):
-        plan = plan_contacts(hole(), path)
+        plan = plan_contacts(hole(), path, robot=TALOS)
         assert verdict.success == plan.success
         assert verdict.last_index == plan.last_index
         np.testing.assert_allclose(verdict.mean_robustness, plan.robustness.mean(), rtol=1e-3)
@@ -123,7 +126,10 @@ def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
     folder, _ = work
     name = "sl1m" if isinstance(settings, Sl1mSettings) else "mip"
     shards = plan_shards(
-        [folder / "walks.npz"], folder / "hole.json", Oracle(name, settings), folder / "out"
+        [folder / "walks.npz"],
+        folder / "hole.json",
+        Oracle(name, settings, robot="talos"),
+        folder / "out",
     )
     assert label_shards(shards, Here(), lambda count: None) == (5, 0)
     for provenance, verdict in read_verdicts(folder / "out"):
@@ -137,18 +143,24 @@ def test_bad_input_is_one_sentence(work):
     folder, _ = work
     with pytest.raises(InputError, match="no planner 'magic'"):
         plan_shards(
-            [folder / "walks.npz"], folder / "hole.json", Oracle("magic", SETTINGS), folder / "out"
+            [folder / "walks.npz"],
+            folder / "hole.json",
+            Oracle("magic", SETTINGS, robot="talos"),
+            folder / "out",
         )
     with pytest.raises(InputError, match="two guide path files are called walks"):
         plan_shards(
             [folder / "walks.npz"] * 2,
             folder / "hole.json",
-            Oracle("sampling", SETTINGS),
+            Oracle("sampling", SETTINGS, robot="talos"),
             folder / "out",
         )
     with pytest.raises(InputError, match="takes MipSettings, not SamplingSettings"):
         plan_shards(
-            [folder / "walks.npz"], folder / "hole.json", Oracle("mip", SETTINGS), folder / "out"
+            [folder / "walks.npz"],
+            folder / "hole.json",
+            Oracle("mip", SETTINGS, robot="talos"),
+            folder / "out",
         )
     with pytest.raises(InputError, match="--samples is for the planner sampling, not for mip"):
         label(

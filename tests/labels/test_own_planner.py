@@ -100,7 +100,7 @@ def test_changed_code_or_settings_are_not_mixed_in(here) -> None:
 
 def test_workers_elsewhere_import_it_too(here) -> None:
     settings = settings_from(find_planner(NAME, [NAME]), furthest=1.21)
-    with Judge(NAME, settings, processes=2) as judge:
+    with Judge(NAME, settings, processes=2, robot="talos") as judge:
         verdicts = judge.judge([hole()], PATHS, [0] * 5)
     assert [verdict.last_index for verdict in verdicts] == expected(1.21)
 

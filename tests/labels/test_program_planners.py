@@ -10,7 +10,7 @@ from jaxleas.contacts.from_guide import NoGroundError, kept_configurations
 from jaxleas.contacts.programs import mip
 from jaxleas.contacts.sampling.plan import Ending
 from jaxleas.contacts.sampling_planner import CAUSE_OF_ENDING
-from jaxleas.labels import MipSettings, Sl1mSettings, judge, judge_over
+from jaxleas.labels import AskedGuides, MipSettings, Sl1mSettings, ask, judge
 from jaxleas.robots import load_robot
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import CAUSES
@@ -22,7 +22,7 @@ BOTH = pytest.mark.parametrize("planner", ["mip", "sl1m"])
 @BOTH
 def test_a_walk_on_flat_ground_succeeds(planner):
     path = straight(2.0)
-    (verdict,) = judge(planner, flat(), [path])
+    (verdict,) = judge(planner, flat(), [path], robot="talos")
     assert verdict.decided
     assert verdict.success
     assert (verdict.reason, verdict.cause) == ("", None)
@@ -41,7 +41,7 @@ def test_a_walk_on_flat_ground_succeeds(planner):
 def test_the_last_index_is_the_last_prefix_that_has_a_plan(planner):
     """A hole of 1.5 m: prefix after prefix is asked one by one, by the mixed-integer planner."""
     path, scene = straight(4.0), hole()
-    (verdict,) = judge(planner, scene, [path])
+    (verdict,) = judge(planner, scene, [path], robot="talos")
     assert not verdict.success
     assert verdict.cause == "no_ground"
     kept = kept_configurations(len(path), 14)
@@ -63,7 +63,8 @@ def test_the_last_index_is_the_last_prefix_that_has_a_plan(planner):
 def test_steps_too_long_for_the_legs_fail_and_shorter_ones_do_not():
     path = straight(3.5, climbing=True)
     long, short = (
-        judge("mip", stairs(), [path], MipSettings(keep_every=every))[0] for every in (40, 12)
+        judge("mip", stairs(), [path], MipSettings(keep_every=every), robot="talos")[0]
+        for every in (40, 12)
     )
     assert not long.success
     assert long.cause == "infeasible"
@@ -73,12 +74,12 @@ def test_steps_too_long_for_the_legs_fail_and_shorter_ones_do_not():
 def test_where_the_scene_ends_the_verdict_ends():
     """Not bad input: a policy may walk anywhere."""
     short = Scene({"floor": floor(-2.0, 1.2, -2.0, 2.0)})
-    (verdict,) = judge("mip", short, [straight(4.0)])
+    (verdict,) = judge("mip", short, [straight(4.0)], robot="talos")
     assert verdict.decided
     assert not verdict.success
     assert verdict.cause == "no_ground"
     assert 0 < verdict.last_index < 60
-    (nowhere,) = judge("mip", short, [straight(1.0, start=5.0)])
+    (nowhere,) = judge("mip", short, [straight(1.0, start=5.0)], robot="talos")
     assert (nowhere.last_index, nowhere.steps, nowhere.mean_step) == (-1, 0, None)
     assert nowhere.cause == "no_start"
 
@@ -86,25 +87,27 @@ def test_where_the_scene_ends_the_verdict_ends():
 @BOTH
 def test_a_path_of_one_configuration_only_has_to_stand(planner):
     here = straight(1.0)[:1]
-    (verdict,) = judge(planner, flat(), [here])
+    (verdict,) = judge(planner, flat(), [here], robot="talos")
     assert (verdict.success, verdict.last_index, verdict.steps) == (True, 0, 0)
     beside = replace(here, position=here.position + 50.0)
-    (verdict,) = judge(planner, flat(), [beside])
+    (verdict,) = judge(planner, flat(), [beside], robot="talos")
     assert (verdict.success, verdict.last_index) == (False, -1)
 
 
 def test_what_is_far_away_does_not_matter():
     far = {f"far_{n}": floor(20.0 + n, 20.9 + n, 20.0, 21.0) for n in range(30)}
     path = straight(1.5, climbing=True)
-    (here,) = judge("sl1m", stairs(), [path])
-    (there,) = judge("sl1m", Scene({**far, **stairs().surfaces}), [path])
+    (here,) = judge("sl1m", stairs(), [path], robot="talos")
+    (there,) = judge("sl1m", Scene({**far, **stairs().surfaces}), [path], robot="talos")
     assert replace(there, seconds=here.seconds) == here
 
 
 @pytest.mark.parametrize("planner", ["mip", "sl1m"])
 def test_no_time_is_no_verdict(planner):
     kind = MipSettings if planner == "mip" else Sl1mSettings
-    (verdict,) = judge(planner, stairs(), [straight(3.0, climbing=True)], kind(time_limit=1e-6))
+    (verdict,) = judge(
+        planner, stairs(), [straight(3.0, climbing=True)], kind(time_limit=1e-6), robot="talos"
+    )
     assert not verdict.decided
     assert not verdict.success
     assert verdict.cause == "time_limit"
@@ -115,7 +118,7 @@ def test_a_planner_that_breaks_gives_no_verdict(monkeypatch):
         raise PlannerError("no answer")
 
     monkeypatch.setattr(mip, "plan_mip", broken)
-    (verdict,) = judge("mip", flat(), [straight(1.0)])
+    (verdict,) = judge("mip", flat(), [straight(1.0)], robot="talos")
     assert not verdict.decided
     assert verdict.cause == "planner_failed"
     assert "no answer" in verdict.reason
@@ -123,14 +126,15 @@ def test_a_planner_that_breaks_gives_no_verdict(monkeypatch):
 
 def test_many_scenes_answer_in_the_order_of_the_paths():
     paths = [straight(1.0), straight(3.0), straight(1.2), straight(3.2)]
-    verdicts = judge_over("sampling", [flat(), hole()], paths, [0, 1, 1, 0], first=10)
+    asked = AskedGuides("talos", [flat(), hole()], paths, [0, 1, 1, 0], first=10)
+    verdicts = ask("sampling", asked)
     assert [verdict.path for verdict in verdicts] == [10, 11, 12, 13]
     for verdict, path, scene in zip(verdicts, paths, (flat(), hole(), hole(), flat()), strict=True):
-        (alone,) = judge("sampling", scene, [path])
+        (alone,) = judge("sampling", scene, [path], robot="talos")
         assert (verdict.success, verdict.last_index) == (alone.success, alone.last_index)
         assert verdict.length == len(path)
         assert verdict.cause == (None if verdict.success else "no_contact")
-    (nowhere,) = judge("sampling", hole(), [straight(1.0, start=50.0)])
+    (nowhere,) = judge("sampling", hole(), [straight(1.0, start=50.0)], robot="talos")
     assert nowhere.cause == "no_start"
 
 
@@ -150,7 +154,7 @@ def test_another_biped_is_judged_by_its_own_polytopes(planner):
     )
     assert near.success
     assert not far.success  # Talos's legs would do
-    assert judge(planner, flat(), [straight(2.0)], kind(keep_every=19))[0].success
+    assert judge(planner, flat(), [straight(2.0)], kind(keep_every=19), robot="talos")[0].success
     (lost,) = judge(planner, flat(), [straight(2.0)], robot="g1")  # at Talos's height
     assert not lost.success
 

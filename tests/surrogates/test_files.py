@@ -101,7 +101,7 @@ def labelled(tmp_path_factory):
         shards = plan_shards(
             [folder / f"guides_{number}.npz"],
             folder / f"scene_{number}.json",
-            Oracle("sampling", settings_from("sampling", samples=500)),
+            Oracle("sampling", settings_from("sampling", samples=500), robot="talos"),
             folder / "verdicts",
         )
         label_shards(shards, Here(), lambda count: None)

@@ -73,7 +73,7 @@ def test_a_worker_killed_while_it_labels_costs_nothing_but_time(tmp_path):
 
     def shards(out):
         files = [tmp_path / "walks.npz"], tmp_path / "hole.json"
-        return plan_shards(*files, Oracle("sl1m"), tmp_path / out, a_shard=2)
+        return plan_shards(*files, Oracle("sl1m", robot="talos"), tmp_path / out, a_shard=2)
 
     workers, killed = RayWorkers(2), []
 

@@ -14,7 +14,7 @@ from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.contacts.sampling.guides import require_usable
 from jaxleas.contacts.sampling.plan import SamplingPlan
 from jaxleas.contacts.sampling.settings import SamplingSettings
-from jaxleas.robots import Robot, load_robot
+from jaxleas.robots import Robot
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath
 
@@ -25,7 +25,8 @@ def plan_contacts(
     scene: Scene,
     guide_path: GuidePath,
     settings: SamplingSettings | None = None,
-    robot: Robot | None = None,
+    *,
+    robot: Robot,
 ) -> SamplingPlan:
     """Plan a robot's contacts along one guide path.
 
@@ -33,25 +34,26 @@ def plan_contacts(
         scene: surfaces to stand on and obstacles to avoid.
         guide_path: guide path to follow exactly.
         settings: settings of the planner; the published ones by default.
-        robot: robot with two legs or more; Talos by default.
+        robot: robot with two legs or more.
 
     Raises:
         InputError: the guide path or the scene cannot be used.
     """
-    return plan_many(scene, [guide_path], settings, robot)[0]
+    return plan_many(scene, [guide_path], settings, robot=robot)[0]
 
 
 def plan_many(
     scene: Scene,
     guide_paths: Sequence[GuidePath],
     settings: SamplingSettings | None = None,
-    robot: Robot | None = None,
+    *,
+    robot: Robot,
 ) -> list[SamplingPlan]:
     """Plan a robot's contacts along several guide paths over one scene, in one process.
 
     Every plan is the one that `plan_contacts` makes.
     """
-    return plan_over([scene], guide_paths, [0] * len(guide_paths), settings, robot)
+    return plan_over([scene], guide_paths, [0] * len(guide_paths), settings, robot=robot)
 
 
 def plan_over(
@@ -59,7 +61,8 @@ def plan_over(
     guide_paths: Sequence[GuidePath],
     scene_index: Sequence[int],
     settings: SamplingSettings | None = None,
-    robot: Robot | None = None,
+    *,
+    robot: Robot,
 ) -> list[SamplingPlan]:
     """Plan a robot's contacts along guide paths, each over one of several scenes, in one process.
 
@@ -71,7 +74,7 @@ def plan_over(
         guide_paths: guide paths to follow exactly.
         scene_index: index of each guide path's scene.
         settings: settings of the planner; the published ones by default.
-        robot: robot with two legs or more; Talos by default.
+        robot: robot with two legs or more.
 
     Returns:
         Plans in the order of the guide paths.
@@ -79,7 +82,7 @@ def plan_over(
     Raises:
         InputError: a guide path or a scene cannot be used.
     """
-    chosen, robot = settings or SamplingSettings(), robot or load_robot("talos")
+    chosen = settings or SamplingSettings()
     for number, path in enumerate(guide_paths):
         require_usable(path, number)
     index = np.asarray(scene_index, dtype=np.int64)

@@ -41,7 +41,7 @@ def test_a_robot_of_many_legs_gets_a_certified_plan(toy: Robot, scene: Scene) ->
 
 
 def test_the_foot_that_moves_is_the_oldest_that_can(toy: Robot) -> None:
-    plan = plan_contacts(flat(), GUIDE, SETTINGS, toy)
+    plan = plan_contacts(flat(), GUIDE, SETTINGS, robot=toy)
     moved = plan.moved[plan.moved >= 0].tolist()
     assert len(moved) > 2 * len(toy.feet)
     same = [one == two for one, two in pairwise(moved)]
@@ -84,7 +84,7 @@ def test_a_start_between_gaps_is_found_foot_by_foot(toy: Robot) -> None:
     """No surface lies below the reference places of the feet on the left."""
     y = 0.15
     scene = Scene({"right": floor(-2, 8, -2.0, y), "left": floor(-2, 8, y + 0.07, 2.0)})
-    plan = plan_contacts(scene, straight(0.5, height=HEIGHT), SETTINGS, toy)
+    plan = plan_contacts(scene, straight(0.5, height=HEIGHT), SETTINGS, robot=toy)
     assert len(plan) > 0, plan.reason
     left = plan.soles[0, 0, 1]
     assert left <= y or left >= y + 0.07

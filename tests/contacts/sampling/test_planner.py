@@ -6,7 +6,7 @@ import pytest
 from jaxleas.contacts.sampling import SamplingSettings, plan_contacts, plan_many, plan_over
 from jaxleas.contacts.sampling.heuristics import HEURISTICS
 from jaxleas.dynamics import ContactPoints, robustness_of
-from jaxleas.robots import load_talos
+from jaxleas.robots import load_robot, load_talos
 from jaxleas.robots.legs import legs_of
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
@@ -14,11 +14,13 @@ from jaxleas.terrain.scene import Scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, floor, hole, stairs, straight, wall
 
+TALOS = load_robot("talos")
+
 
 @pytest.fixture(scope="module")
 def climb():
     scene, path = stairs(), straight(4.0, climbing=True)
-    return scene, path, plan_contacts(scene, path)
+    return scene, path, plan_contacts(scene, path, robot=TALOS)
 
 
 def test_four_metres_of_stairs_are_climbed(climb):
@@ -98,8 +100,8 @@ def test_one_contact_at_most_changes_from_posture_to_posture(climb):
 def test_many_together_are_planned_like_each_alone():
     paths = [straight(1.0 + 0.3 * n, height=0.88 + 0.02 * n, climbing=True) for n in range(4)]
     scene = stairs()
-    for path, plan in zip(paths, plan_many(scene, paths), strict=True):
-        alone = plan_contacts(scene, path)
+    for path, plan in zip(paths, plan_many(scene, paths, robot=TALOS), strict=True):
+        alone = plan_contacts(scene, path, robot=TALOS)
         assert plan.how == alone.how
         np.testing.assert_allclose(plan.soles, alone.soles, atol=1e-12)
         np.testing.assert_allclose(plan.robustness, alone.robustness, rtol=1e-6)
@@ -115,9 +117,9 @@ def test_over_many_scenes_each_is_planned_like_alone():
     paths = [straight(1.5 + 0.1 * n, y=0.05 * n, climbing=n % 4 == 1) for n in range(8)]
     index = [n % 4 for n in range(8)]
     assert any("obstacle" in name for name in boxes)
-    plans = plan_over(scenes, paths, index)
+    plans = plan_over(scenes, paths, index, robot=TALOS)
     for path, number, plan in zip(paths, index, plans, strict=True):
-        alone = plan_contacts(scenes[number], path)
+        alone = plan_contacts(scenes[number], path, robot=TALOS)
         assert (plan.how, plan.surfaces, plan.reason) == (alone.how, alone.surfaces, alone.reason)
         np.testing.assert_allclose(plan.soles, alone.soles, atol=1e-12)
     assert {plan.success for plan in plans} == {True, False}
@@ -125,15 +127,15 @@ def test_over_many_scenes_each_is_planned_like_alone():
 
 def test_the_same_walk_elsewhere():
     path = straight(1.5)
-    here = plan_contacts(flat(), path)
+    here = plan_contacts(flat(), path, robot=TALOS)
     shift = np.array([3.0, -1.0, 0.5])
     moved = Scene({"floor": flat().surfaces["floor"] + shift})
-    there = plan_contacts(moved, replace(path, position=path.position + shift))
+    there = plan_contacts(moved, replace(path, position=path.position + shift), robot=TALOS)
     np.testing.assert_allclose(there.soles, here.soles + shift, atol=1e-9)
 
 
 def test_a_hole_too_wide_stops_the_plan_before_it():
-    plan = plan_contacts(hole(), straight(4.0))
+    plan = plan_contacts(hole(), straight(4.0), robot=TALOS)
     assert not plan.success
     assert "configuration" in plan.reason
     assert 1.0 < 0.5 + 0.02 * plan.last_index < 2.0
@@ -141,14 +143,14 @@ def test_a_hole_too_wide_stops_the_plan_before_it():
 
 
 def test_a_wall_stops_the_trunk():
-    plan = plan_contacts(wall(), straight(4.0))
+    plan = plan_contacts(wall(), straight(4.0), robot=TALOS)
     assert not plan.success
     assert "trunk" in plan.reason
     assert 0.5 + 0.02 * plan.last_index < 2.0 - 0.1
 
 
 def test_nothing_to_stand_on_at_the_start():
-    plan = plan_contacts(flat(), straight(0.5, height=1.6))
+    plan = plan_contacts(flat(), straight(0.5, height=1.6), robot=TALOS)
     assert not plan.success
     assert plan.last_index == -1
     assert len(plan) == 0
@@ -157,7 +159,7 @@ def test_nothing_to_stand_on_at_the_start():
 
 @pytest.mark.parametrize("heuristic", sorted(HEURISTICS))
 def test_every_heuristic_walks_on_flat_ground(heuristic):
-    plan = plan_contacts(flat(), straight(0.8), SamplingSettings(heuristic=heuristic))
+    plan = plan_contacts(flat(), straight(0.8), SamplingSettings(heuristic=heuristic), robot=TALOS)
     assert plan.last_index > 0
     assert plan.robustness.min() >= 2.0
 
@@ -165,7 +167,9 @@ def test_every_heuristic_walks_on_flat_ground(heuristic):
 def test_fixed_step_steps_ahead_and_manipulability_does_not_care():
     places = {}
     for heuristic in ("fixed_step", "reference"):
-        plan = plan_contacts(flat(), straight(2.0), SamplingSettings(heuristic=heuristic))
+        plan = plan_contacts(
+            flat(), straight(2.0), SamplingSettings(heuristic=heuristic), robot=TALOS
+        )
         rows = np.flatnonzero(plan.moved >= 0)
         root = 0.5 + 0.02 * plan.index[rows]
         places[heuristic] = (plan.soles[rows, plan.moved[rows], 0] - root).mean()
@@ -186,12 +190,12 @@ def test_fixed_step_steps_ahead_and_manipulability_does_not_care():
 )
 def test_a_bad_guide_path_is_refused(change, sentence):
     with pytest.raises(InputError, match=sentence):
-        plan_contacts(flat(), replace(straight(1.0), **change))
+        plan_contacts(flat(), replace(straight(1.0), **change), robot=TALOS)
 
 
 def test_a_scene_without_surfaces_is_refused():
     with pytest.raises(InputError, match="no surfaces"):
-        plan_contacts(Scene({}), straight(1.0))
+        plan_contacts(Scene({}), straight(1.0), robot=TALOS)
 
 
 def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
@@ -201,12 +205,15 @@ def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
     railing = floor(-1.0, 9.0, 1.0, 1.1, 0.9)
     touch = {"railing": "palms"}
     more = Scene({**middle, "ceiling": ceiling, "railing": railing}, touch=touch)
-    plain, furnished = plan_contacts(floor_alone, path), plan_contacts(more, path)
+    plain, furnished = (
+        plan_contacts(floor_alone, path, robot=TALOS),
+        plan_contacts(more, path, robot=TALOS),
+    )
     assert plain.success
     assert furnished.success
     np.testing.assert_allclose(furnished.soles, plain.soles)
     low = Scene({**middle, "beam": floor(0.8, 1.2, -3.0, 3.0, 0.3)}, touch={"beam": "palms"})
-    blocked = plan_contacts(low, path)
+    blocked = plan_contacts(low, path, robot=TALOS)
     assert not blocked.success, "the shins would go through the beam"
 
 
@@ -221,6 +228,6 @@ def test_feet_stand_on_what_feet_may_touch_and_legs_stay_clear_of_the_rest():
     ],
 )
 def test_how_a_plan_ends_is_a_value(scene, path, settings, ending):
-    plan = plan_contacts(scene, path, SamplingSettings(samples=2000, **settings))
+    plan = plan_contacts(scene, path, SamplingSettings(samples=2000, **settings), robot=TALOS)
     assert (plan.ending, plan.success) == (ending, ending == "reached")
     assert bool(plan.reason) != plan.success

@@ -32,7 +32,7 @@ def guide_kinds(folder: Path) -> list[Kind]:
     )
     write_guide_paths(folder / "guides.npz", [path, path], ["reached", "stopped"])
     scene, guides = folder / "scene.json", folder / "guides.npz"
-    (shard,) = plan_shards([guides], scene, Oracle("sampling"), folder / "labels")
+    (shard,) = plan_shards([guides], scene, Oracle("sampling", robot="talos"), folder / "labels")
     verdict = Verdict(
         *(0, True, True, 29, 30, 1.0, 4, 0.2, 0, 10.0, 12.0, None, None, "", 0.1),
     )
