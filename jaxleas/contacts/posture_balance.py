@@ -9,6 +9,8 @@ from scipy.spatial import ConvexHull, QhullError
 from jaxleas.contacts.posture_model import Stood, about, limb_of
 from jaxleas.robots import Robot
 
+_LEAST_AREA = 1e-8  # a smaller sole is a point [m^2]
+
 
 def two_point_margin(stood: Stood, moving: str, robot: Robot) -> float:
     """Return the room of the centre of mass above what carries, in reach of all feet [m].
@@ -47,19 +49,21 @@ def two_point_margin(stood: Stood, moving: str, robot: Robot) -> float:
 def _carrying_polygon(stood: Stood, moving: str, robot: Robot) -> np.ndarray:
     """Return the corners above which the centre of mass is carried, counter-clockwise from above.
 
-    These are the sole's of one standing foot; of several, those of the hull of all soles whose
-    friction cones hold the vertical: forces straight up at the corners then carry the robot. None
-    if the hull has no area.
+    These are the sole's of one standing foot; of several, those of the hull of all soles. A sole
+    whose friction cone does not hold the vertical counts for nothing: the forces straight up at the
+    corners, which carry the robot, are not in the cone. None if what carries has no area.
     """
     standing = [foot for foot in stood.corners if foot != moving]
-    if len(standing) == 1:
-        return stood.corners[standing[0]]
     slopes = {foot: math.acos(min(1.0, stood.rotations[foot][2, 2])) for foot in standing}
     points = [
         stood.corners[foot]
         for foot in standing
         if math.tan(slopes[foot]) <= robot.effector(foot).friction + 1e-9
     ]
+    if len(standing) == 1 and points:
+        (x, y), (next_x, next_y) = points[0].T[:2], np.roll(points[0], -1, axis=0).T[:2]
+        area = 0.5 * abs(float((x * next_y - next_x * y).sum()))
+        return points[0] if area > _LEAST_AREA else np.zeros((0, 3))
     try:
         together = np.concatenate(points)
         return together[ConvexHull(together[:, :2]).vertices]

@@ -48,7 +48,8 @@ class PostureCertificate:
         """Description of what is wrong, as the end of a sentence; empty for a certified plan."""
         worst = self.worst
         if not worst.certified:
-            return f"violates {worst.constraint} in posture {worst.phase} by {worst.metres:.3g} m"
+            much = f" by {worst.metres:.3g} m" if math.isfinite(worst.metres) else ": there is none"
+            return f"violates {worst.constraint} in posture {worst.phase}{much}"
         if self.least_robustness < 0.0:
             return f"has a posture out of equilibrium, by {-self.least_robustness:.3g} N"
         if self.robustness_error > _SAME_FORCE:

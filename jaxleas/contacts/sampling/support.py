@@ -35,11 +35,18 @@ class Sides:
         )
 
 
-def sides_of_polygon(corners: Float[np.ndarray, "N C 3"]) -> Sides:
-    """Return the prism above polygons whose corners run counter-clockwise seen from above."""
+def sides_of_polygon(corners: Float[np.ndarray, "N C 3"], carries: Bool[np.ndarray, " N"]) -> Sides:
+    """Return the prisms above polygons; where one is a point or carries nothing, an empty set.
+
+    Args:
+        corners: corners of each polygon, counter-clockwise seen from above [m].
+        carries: whether each polygon carries.
+    """
     edges = np.roll(corners, -1, axis=1) - corners
     normals = _outward(edges)
-    return Sides(normals, (normals * corners).sum(axis=2))
+    slack = (normals * corners).sum(axis=2)
+    slack[~carries | ~np.any(normals, axis=(1, 2))] = -1.0
+    return Sides(normals, slack)
 
 
 def sides_of_hull(points: Float[np.ndarray, "N K 3"], carries: Bool[np.ndarray, "N K"]) -> Sides:

@@ -6,10 +6,12 @@ and after m has arrived a point c1 which all reach at the new ones. By convexity
 from c0 to c1 is in equilibrium and in reach of the standing feet all the way (Tonneau et al. 2018,
 "2PAC", for two feet).
 
-One standing foot carries above its sole. Several carry above the convex hull of their soles, seen
-from above: weights of the corners, straight down, then hold the robot. A foot whose friction cone
-does not hold the vertical carries nothing of that. The hull is part of what several feet on uneven
-ground can carry, never more.
+One standing foot carries above its sole. On ground steeper than its friction it carries nothing: the
+sum of its forces would have to be vertical, but lies in its friction cone. A point foot alone
+carries nothing, either. Several feet carry above the convex hull of their soles, seen from above:
+weights of the corners, straight down, then hold the robot. A foot whose friction cone does not hold
+the vertical carries nothing of that. The hull is part of what several feet on uneven ground can
+carry, never more.
 """
 
 from dataclasses import dataclass
@@ -75,11 +77,11 @@ def com_region(legs: Legs, standing: Soles) -> ComRegion:
     """
     origin = standing.position[:, 0]
     corners = standing.corners - origin[:, None, None]
+    steepest = 1.0 / np.sqrt(1.0 + legs.friction[standing.limb] ** 2)
+    carries = standing.rotation[:, :, 2, 2] >= steepest
     if standing.limb.shape[1] == 1:
-        sides = sides_of_polygon(corners[:, 0])
+        sides = sides_of_polygon(corners[:, 0], carries[:, 0])
     else:
-        steepest = 1.0 / np.sqrt(1.0 + legs.friction[standing.limb] ** 2)
-        carries = standing.rotation[:, :, 2, 2] >= steepest
         sides = sides_of_hull(
             corners.reshape(len(origin), -1, 3), np.repeat(carries, corners.shape[2], axis=1)
         )

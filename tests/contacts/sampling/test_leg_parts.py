@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from scipy.optimize import linprog
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
@@ -21,8 +22,9 @@ from jaxleas.contacts.sampling.requirement import Requirement
 from jaxleas.contacts.sampling.roots import Roots
 from jaxleas.contacts.sampling.support import sides_of_hull
 from jaxleas.contacts.sampling.two_point import Soles, com_exists, com_region
+from jaxleas.dynamics import ContactPoints, exact_robustness
 from jaxleas.geometry import Box
-from jaxleas.robots import load_talos
+from jaxleas.robots import Robot, load_talos
 from jaxleas.robots.legs import legs_of
 from jaxleas.robots.limb_model import LinkBox
 from jaxleas.terrain.scene import Scene
@@ -229,3 +231,46 @@ def test_each_leg_is_kept_clear_by_its_own_boxes() -> None:
             assert placed.reachable.all()
             hit = legs_collide(case.legs, placed, limb, case.ground, feet=True)
             np.testing.assert_array_equal(hit, [False, sticks_out and wall_is_right])
+
+
+def one_foot(robot: Robot, slope: float, half_size: tuple[float, float], heading: float):
+    """Return both verdicts on the right foot leaving, while the left one stands on a slope."""
+    legs, names = legs_of(robot), robot.foot_names
+    rotation = Rotation.from_euler("zx", [[heading, slope], [0.0, 0.0]]).as_matrix()
+    position = np.stack([robot.references[index] for index in robot.feet])
+    x, y = half_size
+    square = np.array([[x, y, 0.0], [-x, y, 0.0], [-x, -y, 0.0], [x, -y, 0.0]])
+    corners = position[:, None] + square @ rotation.transpose(0, 2, 1)
+    standing = Soles(np.array([[0]]), position[None, :1], rotation[None, :1], corners[None, :1])
+    region = com_region(legs, standing)
+    found = com_exists(legs, region, np.array([1]), position[1:], rotation[1:])[0]
+    stood = Stood(
+        found=[],
+        rotations=dict(zip(names, rotation, strict=True)),
+        soles=dict(zip(names, position, strict=True)),
+        corners=dict(zip(names, corners, strict=True)),
+        com=np.zeros(3),
+        mass=1.0,
+    )
+    return found, two_point_margin(stood, names[1], robot), (corners[0], rotation[0])
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4])
+def test_one_foot_stands_on_a_slope_exactly_where_its_friction_holds_it(heading) -> None:
+    """A third judge, exact friction cones, decides for a centre of mass above the sole."""
+    robot = load_talos()
+    mu = robot.effectors[0].friction
+    for slope in np.arctan(mu) * np.array([0.0, 0.5, 0.98, 1.02, 1.5, 2.0]):
+        found, margin, (corners, rotation) = one_foot(robot, slope, (0.1, 0.06), heading)
+        contacts = ContactPoints(corners, np.tile(rotation[:, 2], (4, 1)), mu)
+        above = corners.mean(axis=0) + np.array([0.0, 0.0, 0.8])
+        stands = exact_robustness(contacts, above, mass=robot.mass) >= 0.0
+        assert stands == (slope < np.arctan(mu))
+        assert found == stands
+        assert (margin >= 0.0) == stands
+
+
+def test_one_point_foot_carries_nothing() -> None:
+    found, margin, _ = one_foot(load_talos(), 0.0, (0.0, 0.0), 0.0)
+    assert not found
+    assert margin == -np.inf
