@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jaxleas.contacts.landings import landings_of
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.constraints import rotation
 from jaxleas.files import atomic_path
 from jaxleas.robots import LIMB_OF_FOOT
 from jaxleas.types import GuidePath, InputError
@@ -68,7 +68,7 @@ def draw_plan(
     for ax, (view, shown) in zip(axes, VIEWS.items(), strict=True):
         _draw_surfaces(ax, problem, plan, shown)
         _draw_guide(ax, roots, shown)
-        _draw_feet(ax, problem, plan if made is None else made, shown)
+        _draw_contacts(ax, problem, plan if made is None else made, shown)
         _draw_stop(ax, plan, roots, shown)
         _frame(ax, problem, plan, roots, shown)
         ax.set_ylabel(f"{'xyz'[shown[1]]} [m], {view}")
@@ -120,38 +120,32 @@ def _draw_stop(ax: "Axes", plan: ContactPlan, roots: np.ndarray, shown: tuple[in
     ax.plot(*here, "x", color=FAILED, markersize=12, markeredgewidth=3, label="stopped", zorder=5)
 
 
-def _draw_feet(
+def _draw_contacts(
     ax: "Axes", problem: ContactProblem, plan: ContactPlan, shown: tuple[int, int]
 ) -> None:
-    feet = [(foot, pose.position, pose.yaw) for foot, pose in problem.initial.items()]
-    if plan.footholds is not None and len(plan.footholds):
-        for step, point in zip(problem.steps, plan.footholds, strict=False):
-            feet.append((step.foot, point, step.yaw))
+    """Draw what touches as it lies on its surface, seen along the third axis; points as dots."""
     places = [each.com for each in plan.postures or ()] if plan.com is None else plan.com
     if len(places):
         com = np.reshape(places, (-1, 3))[:, list(shown)]
         ax.plot(*com.T, "-", color=COM, linewidth=0.8, label="centre of mass", zorder=4)
     colours = dict(zip(problem.effectors, cycle(COLOURS), strict=False))
     labelled = set()
-    for foot, point, yaw in feet:
-        corners = point + sole(problem.half_sizes[foot]) @ rotation(yaw).T
-        label = None if foot in labelled else FULL_NAMES.get(foot, foot)
-        colour = colours[foot]
-        labelled.add(foot)
+    for landing in landings_of(problem, plan):
+        name = landing.effector
+        corners = landing.corners[:, list(shown)].T
+        label = None if name in labelled else FULL_NAMES.get(name, name)
+        labelled.add(name)
+        if corners.shape[1] == 1:
+            ax.plot(*corners, ".", color=colours[name], label=label, zorder=3)
+            continue
         ax.fill(
-            *corners[:, list(shown)].T,
-            facecolor=colour,
-            edgecolor=colour,
+            *corners,
+            facecolor=colours[name],
+            edgecolor=colours[name],
             alpha=0.75,
             label=label,
             zorder=3,
         )
-
-
-def sole(half_size: tuple[float, float]) -> np.ndarray:
-    """Return the corners of a sole around its middle [m]."""
-    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half_size
-    return np.column_stack([corners, np.zeros(4)])
 
 
 def _frame(

@@ -6,8 +6,8 @@ and after m has arrived a point c1 which all reach at the new ones. By convexity
 from c0 to c1 is in equilibrium and in reach of the standing feet all the way (Tonneau et al. 2018,
 "2PAC", for two feet).
 
-One standing foot carries above its sole. On ground steeper than its friction it carries nothing: the
-sum of its forces would have to be vertical, but lies in its friction cone. A point foot alone
+One standing foot carries above its sole. On ground steeper than its friction it carries nothing:
+the sum of its forces would have to be vertical, but lies in its friction cone. A point foot alone
 carries nothing, either. Several feet carry above the convex hull of their soles, seen from above:
 weights of the corners, straight down, then hold the robot. A foot whose friction cone does not hold
 the vertical carries nothing of that. The hull is part of what several feet on uneven ground can
