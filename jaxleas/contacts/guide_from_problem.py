@@ -6,15 +6,15 @@ import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.robots import load_robot
-from jaxleas.terrain import Scene, is_vertical
+from jaxleas.terrain import Scene, is_vertical, scale_for
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2
-"""Largest distance [m] and turn [rad] between two configurations, and their interval [s], as in
-guide paths of LEAS."""
+"""Largest distance [m] and turn [rad] between two configurations, and their interval [s], as the
+steering task has them by default."""
 LOWER, HIGHER = 0.10, 0.03
 """At the start the root stands as high above the feet as the first root does above their middle,
-but at most this far below and above the robot's walking height [m]."""
+but at most this far below and above the walking height of a robot with legs like Talos's [m]."""
 
 
 def guide_from_problem(problem: ContactProblem) -> GuidePath:
@@ -38,8 +38,9 @@ def guide_from_problem(problem: ContactProblem) -> GuidePath:
     feet = list(problem.initial.values())
     middle = np.mean([foot.position for foot in feet], axis=0)
     roots = np.array([step.root for step in problem.steps])
-    usual = load_robot(problem.robot).walking_height
-    height = float(np.clip(roots[0, 2] - middle[2], usual - LOWER, usual + HIGHER))
+    robot = load_robot(problem.robot)
+    usual, leg = robot.walking_height, scale_for(robot).leg
+    height = float(np.clip(roots[0, 2] - middle[2], usual - LOWER * leg, usual + HIGHER * leg))
     heading = math.atan2(*(sum(part(foot.yaw) for foot in feet) for part in (math.sin, math.cos)))
     places = np.concatenate([(middle + np.array([0.0, 0.0, height]))[None], roots])
     yaws = np.unwrap([heading, *(step.yaw for step in problem.steps)])

@@ -29,7 +29,7 @@ def fit(
         out: surrogate file, .npz.
         planner: planner whose verdicts are accepted; any planner by default.
         policy: run folder or policy whose environment the surrogate is for; by default the
-            environment's defaults.
+            environment's defaults for the robot that was judged.
         where: additional folders with guide paths and scenes.
         epochs: passes over the guide paths.
         code: outputs of the network's encoder.
@@ -52,9 +52,14 @@ def fit(
     except ValidationError as error:
         first = error.errors()[0]
         raise InputError(f"--{first['loc'][0]} {first['input']}: {first['msg'].lower()}") from error
-    config = SteeringConfig() if policy is None else load_policy(policy).config
-    env = SteeringEnv(config)
+    config = None if policy is None else load_policy(policy).config
     found = read_labels(list(labels), list(where), DEFAULT_RESOLUTION)
+    if config is None:
+        try:
+            config = SteeringConfig.for_robot(found.robot)
+        except InputError as error:
+            raise InputError(f"{labels[0]} holds verdicts on {found.robot}: {error}") from error
+    env = SteeringEnv(config)
     if planner is not None and found.planner != planner:
         raise InputError(
             f"{labels[0]} holds verdicts of the {found.planner} planner, not of {planner}"

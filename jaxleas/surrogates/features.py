@@ -1,18 +1,43 @@
 """Inputs of a surrogate at a kept configuration: local terrain, and motion since the last one."""
 
+from typing import Self
+
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
+from jaxleas.configuration import Positive, Strict
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.geometry import rotate_by_yaw, wrap_angle
 from jaxleas.types import RootMotion
 
 MOTION_FEATURES = 7  # displacement, turn, velocity
-# The scales make features of a walk at the desired speed of order one.
-_SPEED = 0.1  # [m/s]
-_TIME_STEP = 0.2  # [s]
-_TURN = 0.07  # turn in one time step at the greatest turn rate [rad]
+
+
+class Pace(Strict):
+    """The task's usual motion, by which features are divided: they become of order one.
+
+    The defaults are those of files that record none.
+    """
+
+    speed: Positive = 0.1
+    """desired speed [m/s]"""
+    time_step: Positive = 0.2
+    """time between two configurations [s]"""
+    turn: Positive = 0.07
+    """turn in one time step at the greatest turn rate [rad]"""
+
+    @classmethod
+    def of(cls, env: SteeringConfig) -> Self:
+        """Return the pace of a task, each number to one significant digit."""
+        limits = env.limits
+        numbers = env.desired_speed, limits.time_step, limits.max_turn_rate * limits.time_step
+        speed, time_step, turn = (float(f"{each:.1g}") for each in numbers)
+        return cls(speed=speed, time_step=time_step, turn=turn)
+
+
+USUAL_PACE = Pace()
 
 
 def near_points(
@@ -36,6 +61,7 @@ def walk_features(
     last: RootMotion,
     keep_every: int,
     height_range: tuple[float, float],
+    pace: Pace = USUAL_PACE,
 ) -> Float[Array, "*batch size"]:
     """Return the features of one kept configuration.
 
@@ -45,6 +71,7 @@ def walk_features(
         last: root motion at the previous kept configuration; at the first one, the current motion.
         keep_every: number of time steps from one kept configuration to the next.
         height_range: lowest and highest height, to which heights are clipped [m].
+        pace: usual motion.
     """
     low, high = height_range
     heights = jnp.clip(heights_in_root, low, high)
@@ -55,9 +82,9 @@ def walk_features(
     return jnp.concatenate(
         [
             heights,
-            displacement / (keep_every * _TIME_STEP * _SPEED),
-            turn[..., None] / (keep_every * _TURN),
-            velocity / _SPEED,
+            displacement / (keep_every * pace.time_step * pace.speed),
+            turn[..., None] / (keep_every * pace.turn),
+            velocity / pace.speed,
         ],
         axis=-1,
     )

@@ -178,6 +178,7 @@ class _Hazards:
             last,
             self.identity.keep_every,
             (self.identity.height_low, self.identity.height_high),
+            self.identity.pace,
         )
         if "flip" in walks:
             order, sign = self.mirror

@@ -117,5 +117,7 @@ class SurrogateForesight:
         """Return hidden state and hazard after a kept configuration."""
         identity = self.surrogate.identity
         height_range = identity.height_low, identity.height_high
-        features = walk_features(heights, motion, last, identity.keep_every, height_range)
+        features = walk_features(
+            heights, motion, last, identity.keep_every, height_range, identity.pace
+        )
         return self.surrogate.hazard(hidden, features)

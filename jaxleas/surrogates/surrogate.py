@@ -14,7 +14,7 @@ from pydantic import JsonValue
 from jaxleas.configuration import Strict
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.robots import load_robot
-from jaxleas.surrogates.features import MOTION_FEATURES, near_points
+from jaxleas.surrogates.features import MOTION_FEATURES, USUAL_PACE, Pace, near_points
 from jaxleas.surrogates.network import Weights, recur
 
 
@@ -32,6 +32,8 @@ class Identity(Strict):
     """lower bound to which heights are clipped [m]"""
     height_high: float
     """upper bound to which heights are clipped [m]"""
+    pace: Pace = USUAL_PACE
+    """usual motion of the task that it was fitted for"""
 
     @classmethod
     def of(cls, planner: str, parameters: dict[str, JsonValue], env: SteeringConfig) -> Self:
@@ -49,6 +51,7 @@ class Identity(Strict):
             observation=env.observation,
             height_low=env.height_low,
             height_high=env.height_high,
+            pace=Pace.of(env),
         )
 
     @property

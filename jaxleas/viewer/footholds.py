@@ -44,10 +44,7 @@ def footholds_of(
     landings = landings_of(problem, plan)
     footholds = []
     for index, each in enumerate(landings):
-        later = landings[index + 1 :]
-        leaves = [
-            other.step * seconds_per_step for other in later if other.effector == each.effector
-        ]
+        later = [other.step for other in landings[index + 1 :] if other.effector == each.effector]
         footholds.append(
             Foothold(
                 effector=each.effector,
@@ -55,7 +52,7 @@ def footholds_of(
                 pose=each.pose,
                 half_size=each.half_size,
                 time=each.step * seconds_per_step,
-                until=min(leaves, default=np.inf),
+                until=min(later, default=np.inf) * seconds_per_step,
             )
         )
     return tuple(footholds)

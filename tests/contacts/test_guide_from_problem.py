@@ -31,6 +31,16 @@ def test_the_guide_goes_through_every_root() -> None:
     assert (np.diff(guide.time) > 0).all()
 
 
+def test_the_first_root_stays_within_the_robots_own_band() -> None:
+    """G1's legs are 0.7 / 0.95 as long as Talos's, and so is what its root may differ by."""
+    described = stones(0.1)
+    for phase in described["phases"]:
+        phase["root"] = [0.0, 0.0, 0.3]
+    for name, lowest in (("talos", 0.95 - 0.1), ("g1", 0.7 - 0.1 * 0.7 / 0.95)):
+        asked = replace(problem(described), robot=name)
+        assert guide_from_problem(asked).position[0, 2] == pytest.approx(lowest)
+
+
 def test_it_turns_the_short_way() -> None:
     described = stones(0.1)
     for index, phase in enumerate(described["phases"]):

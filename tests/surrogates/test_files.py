@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import jax
 import jax.numpy as jnp
@@ -189,7 +190,7 @@ def test_old_labels_that_name_no_robot_are_of_talos_and_go_with_new_ones(labelle
     assert len(labels.walks) == 8
 
 
-def fit_to(labelled, tmp_path, **robot):
+def fit_to(labelled, tmp_path, *options, **robot):
     """The command, on labels whose robot is changed."""
     shutil.copytree(labelled / "verdicts", tmp_path / "verdicts")
     for file in (tmp_path / "verdicts").rglob("verdicts_*.json"):
@@ -197,13 +198,22 @@ def fit_to(labelled, tmp_path, **robot):
         content["provenance"]["robot"] |= robot
         write_json(file, content)
     verdicts, where = str(tmp_path / "verdicts"), str(labelled)
-    cli.run(["fit", verdicts, "--where", where, "--out", str(tmp_path / "s.npz")])
+    cli.run(["fit", verdicts, "--where", where, "--out", str(tmp_path / "s.npz"), *options])
 
 
 def test_labels_are_of_the_policys_own_robot(labelled, tmp_path):
+    policy = Path(__file__).parents[2] / "pretrained" / "leas_p1.npz"
     with pytest.raises(InputError, match="verdicts on atlas, but the policy is for talos"):
-        fit_to(labelled, tmp_path, name="atlas")
+        fit_to(labelled, tmp_path, "--policy", str(policy), name="atlas")
     assert not (tmp_path / "s.npz").exists()
+
+
+def test_without_a_policy_the_labels_name_the_robot(labelled, tmp_path):
+    with pytest.raises(InputError, match="verdicts on atlas: there is no robot 'atlas'"):
+        fit_to(labelled, tmp_path, name="atlas")
+    shutil.rmtree(tmp_path / "verdicts")
+    with pytest.raises(InputError, match="the labels come from 2 terrains"):
+        fit_to(labelled, tmp_path, name="g1", sha256=robot_digest("g1"))
 
 
 def test_labels_are_of_the_robot_as_it_is_now(labelled, tmp_path):

@@ -4,8 +4,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.surrogates.features import MOTION_FEATURES, mirrored, walk_features
+from jaxleas.envs.steering import MotionLimits, SteeringConfig
+from jaxleas.surrogates.features import MOTION_FEATURES, Pace, mirrored, walk_features
 from jaxleas.surrogates.network import initial_weights, recur
+from jaxleas.surrogates.surrogate import Identity
 from jaxleas.types import RootMotion
 
 from .walkers import env
@@ -39,6 +41,33 @@ def test_features_equal_the_slow_twin():
             *(into_root @ np.asarray(now.velocity[row]) / 0.1),
         ]
         np.testing.assert_allclose(found[row], expected, atol=2e-5)
+
+
+def test_a_faster_walk_has_the_same_features_in_its_own_pace():
+    """Lengths and speeds of a walk are multiplied, and its pace with them."""
+    generator = np.random.default_rng(2)
+    now, last = motion(generator), motion(generator)
+    now, last = (each.replace(yaw=0.2 * each.yaw) for each in (now, last))
+    heights = jnp.asarray(generator.uniform(-1.4, -0.2, (6, 9)), jnp.float32)
+    plain = walk_features(heights, now, last, 5, (-1.4, -0.2))
+    fast = Pace(speed=0.4, time_step=0.1, turn=0.07)  # twice as far in a step, four times as fast
+    quick = [
+        each.replace(position=2.0 * each.position, velocity=4.0 * each.velocity)
+        for each in (now, last)
+    ]
+    found = walk_features(heights, *quick, 5, (-1.4, -0.2), fast)
+    np.testing.assert_allclose(found, plain, atol=2e-5)
+
+
+def test_the_pace_is_the_tasks_and_files_that_record_none_have_the_default():
+    assert Pace.of(SteeringConfig()) == Pace()
+    limits = MotionLimits(time_step=0.1, max_turn_rate=1.0)
+    config = SteeringConfig(desired_speed=0.84, limits=limits)
+    assert Pace.of(config) == Pace(speed=0.8, time_step=0.1, turn=0.1)
+    written = Identity.of("mip", {"keep_every": 14}, config).model_dump(mode="json")
+    assert Identity.model_validate(written).pace == Pace.of(config)
+    del written["pace"]
+    assert Identity.model_validate(written).pace == Pace()
 
 
 def test_features_of_a_mirrored_walk_are_the_mirrored_features():
