@@ -79,7 +79,7 @@ def contact_plan(found: SamplingPlan, feet: Sequence[str], gap: float) -> Contac
     Args:
         found: answer of the planner.
         feet: names of the robot's feet, in its order.
-        gap: between a standing sole and its surface, `SamplingSettings.contact_lift` [m].
+        gap: distance between a standing sole and its surface, `SamplingSettings.contact_lift` [m].
     """
     postures = tuple(_posture(found, row, feet, gap) for row in range(len(found)))
     made = [posture for posture in postures if posture.moved is not None]

@@ -64,7 +64,7 @@ class ContactProblem:
         polytopes: reach of a step and of the centre of mass.
         half_sizes: half length and half width of each effector's sole [m], by the effector's name;
             zeros for a point foot.
-        parts: for each surface that is part of another one, the name of that surface.
+        parts: name of the whole surface of each surface that is part of one.
 
     Raises:
         InputError: an effector has no half sizes, or model "two_com" is given other than two

@@ -41,7 +41,7 @@ def judge_round(
         method: name of the policy in the results.
         examiner: exact planner that judges.
         config: suites and number of starts.
-        progress: called with what is being judged, in words.
+        progress: callable that is given a description of what is being judged.
     """
     if file.is_file():
         return read_judged(file)

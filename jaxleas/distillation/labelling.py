@@ -69,7 +69,7 @@ def label_round(
         collection: guide paths to collect.
         oracle: exact planner to ask about them.
         workers: workers that ask it.
-        progress: called with the number of guide paths that have verdicts, and the total.
+        progress: callable that is given the number of guide paths with verdicts, and the total.
     """
     begun = time.perf_counter()
     files = sorted(folder.labels.glob("guides_*.npz"))

@@ -20,7 +20,7 @@ def require_starts(answer: Any, count: int) -> None:
     """Refuse what `draw_starts` may not give.
 
     Args:
-        answer: what it gave.
+        answer: answer of the task's method.
         count: number of candidates that it was asked for.
 
     Raises:
@@ -37,7 +37,7 @@ def require_step(answer: Any, state: Any, robots: int) -> None:
     """Refuse what `advance` may not give.
 
     Args:
-        answer: what it gave.
+        answer: answer of the task's method.
         state: state that it was given.
         robots: number of robots.
 
@@ -68,7 +68,7 @@ def require_observation(answer: Any, signature: Signature, robots: int) -> None:
     """Refuse an observation that is not as the signature says.
 
     Args:
-        answer: what `look` gave.
+        answer: answer of `look`.
         signature: signature of the task.
         robots: number of robots.
 
@@ -96,7 +96,7 @@ def require_examination(answer: Any, groups: tuple[str, ...]) -> None:
     """Refuse what `examination` may not give.
 
     Args:
-        answer: what it gave.
+        answer: answer of the task's method.
         groups: names of the groups of the task's starts.
 
     Raises:

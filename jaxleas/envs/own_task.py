@@ -13,7 +13,7 @@ def require_task(name: str, item: Any) -> None:
 
     Args:
         name: name of the task, MODULE:CLASS.
-        item: what was found under that name.
+        item: object found under that name.
 
     Raises:
         InputError: one sentence says what is missing or wrong.

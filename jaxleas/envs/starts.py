@@ -67,7 +67,7 @@ def draw_failing_picks(
     """Return indices of valid candidates, more often of groups that fail often.
 
     Args:
-        pool: candidates.
+        pool: candidates for starts.
         key: random key, consumed here.
         shape: shape of the indices.
         rate: share of each group's episodes that failed, above 0.

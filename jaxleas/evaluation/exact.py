@@ -32,8 +32,8 @@ class Bookkeeping:
 
     Attributes:
         known: results that exist already; the questions they answer are not asked again.
-        on_result: called with each new result as soon as it is there.
-        on_guides: called with cell, method, planner and the number of guide paths just judged.
+        on_result: callable that is given each new result at once.
+        on_guides: callable that is given cell, method, planner and number of guide paths judged.
     """
 
     known: Mapping[ResultKey, CellResult] = field(default_factory=dict)
@@ -93,7 +93,7 @@ def ask(
         walked: roll-outs of the cell.
         planner: planner that judges.
         time_step: time between two configurations [s].
-        on_done: called with the number of guide paths judged since the call before.
+        on_done: callable that is given the number of guide paths judged since the last call.
     """
     numbers = np.flatnonzero(walked.reached).tolist()
     verdicts: list[Verdict | None] = [None] * len(walked.reached)

@@ -71,7 +71,7 @@ def examine(
         candidate: policy to judge.
         suite: suite to judge it on.
         baseline: whether RB-Lin and RB-Kino are judged as well.
-        progress: called with the cell that is being walked.
+        progress: callable that is given the cell that is being walked, in words.
         grounds: height maps of the suite's scenes, if already made.
     """
     begin = time.perf_counter()
@@ -113,7 +113,7 @@ def run_evaluations(
         candidate: policy of the run.
         run: folder of the run.
         basis: suites and terrain, shared with the report's pictures.
-        progress: called with the cell that is being walked.
+        progress: callable that is given the cell that is being walked, in words.
     """
     scale = scale_for(candidate.env.robot)
     evaluations = []

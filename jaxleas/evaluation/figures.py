@@ -76,9 +76,9 @@ def measure_figures(
         env: steering task.
         walkers: methods, by name.
         suite: `thesis`, cut down to the cells of `figure_cells`.
-        questions: what the exact planner is asked.
+        questions: settings, workers and discretisations of the exact planner.
         file: figure file, with the rows that it has already.
-        say: called with what is being done.
+        say: callable that is given a description of what is being done.
     """
     cells = {cell.name: cell for cell in suite.cells}
     figures, keep_every = file.figures, questions.keep_every

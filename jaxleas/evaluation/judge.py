@@ -85,7 +85,7 @@ def judge(
         env: steering task: gives validity, the goal's radius and the time step.
         methods: steering methods by the name that results carry.
         suite: suite to be walked.
-        progress: called, in words, with the cell that is being walked.
+        progress: callable that is given the cell that is being walked, in words.
         grounds: height maps of the suite's scenes, if already made: suites that share them, and
             have the same numbers of starts and steps, share one compilation per method.
 

@@ -29,7 +29,7 @@ class Grounds:
 
     Attributes:
         maps: one height map per scene.
-        atlas: the same maps on the device; one shape for all cells, so that roll-outs compile once.
+        atlas: those maps on the device; one shape for all cells, so that roll-outs compile once.
         index: index of each scene's map, by the scene's identity.
     """
 

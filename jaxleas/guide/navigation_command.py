@@ -51,7 +51,7 @@ def navigate(
         seed: random seed of the search.
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
-        reading: what the file does not state itself.
+        reading: details that the file does not state itself.
 
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.

@@ -35,7 +35,7 @@ class RollOut:
         yaw: heading [rad].
         velocity: velocity of the root in the world [m/s].
         margin: margin of the environment's condition [m].
-        valid: whether margin >= 0.
+        valid: whether each configuration's margin is at least 0.
         end: index of the last configuration.
         reached: whether the last waypoint was reached with every configuration valid.
         invalid: whether the last configuration violates the condition.

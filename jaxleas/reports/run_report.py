@@ -59,7 +59,7 @@ def write_report(
         evaluations: evaluations of the policy, one per suite.
         basis: basis with the scenes to be drawn.
         out: file to write; by default RUN/report.html.
-        progress: called with what is being made.
+        progress: callable that is given a description of what is being made.
 
     Returns:
         Path of the written report.

@@ -56,7 +56,7 @@ def draw_side_by_side(
         suite: suite whose cells are drawn.
         planners: names of the exact planners; the first colours the starts.
         folder: folder of the pictures.
-        say: called with what is being drawn.
+        say: callable that is given a description of what is being drawn.
 
     Returns:
         Paths of the pictures.

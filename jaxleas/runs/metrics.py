@@ -27,7 +27,7 @@ class MetricsLog:
 
     Args:
         folder: run folder.
-        truncate_after_step: when resuming, the step to resume from: later lines are dropped.
+        truncate_after_step: step from which a run is resumed: later lines are dropped.
         watch: names of the watchers; they never stop or slow a training.
         config: configuration of the run as plain values, for the watchers.
         say: function that is called with a sentence about a watcher that fails.

@@ -52,7 +52,7 @@ def view(
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
-        reading: what the file does not state itself.
+        reading: details that the file does not state itself.
     """
     from jaxleas.terrain import import_terrain, read_scene
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky

@@ -84,7 +84,7 @@ class RobotShape:
 
         Args:
             points: points in the root frame [m].
-            share: 0 for the lowest height that the policy can distinguish, 1 for the highest.
+            share: number from 0 to 1: the lowest and the highest height that the policy can see.
         """
         points = np.add(points, [0.0, 0.0, SEEN_LIFT])
         colours = np.round(LOW + share[:, None] * (HIGH - LOW)).astype(np.uint8)

@@ -32,7 +32,7 @@ class Decision:
         status: "optimal" for a plan, "infeasible" for proof that there is none.
         surfaces: surface of each step.
         placement: footholds and centre of mass.
-        dead_step: where infeasible, a step that certainly cannot be made, if pruning found one.
+        dead_step: step that certainly cannot be made, if pruning found one.
         programs: number of mixed-integer programs solved.
     """
 

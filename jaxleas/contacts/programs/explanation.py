@@ -27,7 +27,7 @@ class Blame:
     """Changes that would make a step possible.
 
     Attributes:
-        short: for each family of constraints to blame, the relaxation that suffices [m].
+        short: relaxation that suffices, for each family of constraints to blame [m].
         surface: surface of the scene that would suffice as a candidate, whole; empty if none.
         in_time: whether every question was answered before the deadline.
     """

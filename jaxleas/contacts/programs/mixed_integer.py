@@ -137,7 +137,7 @@ def add_constraint(
         constraint: constraints on the step.
         rows: rows to append to.
         begin: column of p_m's first coordinate.
-        starts: the same column for every step.
+        starts: column of the first coordinate of each step's foothold.
     """
     for link in constraint.links:
         blocks, bound = [(begin + np.arange(3), link.A)], link.b

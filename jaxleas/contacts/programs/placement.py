@@ -34,7 +34,7 @@ class Placement:
         constraints: constraints on the steps as given, with the cuts that were found on the way.
         footholds: foothold of each step [m].
         com: places of the centre of mass in each step [m]; None for the model "feet".
-        blamed: where infeasible, steps whose surfaces together are impossible, whatever the
+        blamed: steps of an infeasible problem whose surfaces together are impossible, whatever the
             surfaces of the others.
     """
 

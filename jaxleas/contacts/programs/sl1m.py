@@ -67,7 +67,7 @@ def plan_sl1m(
             (the thesis's SL1M without heuristics), which plans where every step is decided.
         weights: weights of the slacks: "uniform", as published, or "guide": the guide path chooses.
         time_limit: time limit [s]; when it is over, the plan's status says "time_limit".
-        diagnose: when there is no plan, find the last step for which SL1M has one.
+        diagnose: whether to find the last step for which SL1M has a plan, if it has none for all.
         pruning: whether candidates that no step can reach are dropped first.
 
     Raises:

@@ -22,7 +22,7 @@ class NormalDistribution:
     """The normal distribution of a raw action, before its tanh.
 
     Attributes:
-        location: mean.
+        location: mean of the distribution.
         deviation: standard deviation.
     """
 

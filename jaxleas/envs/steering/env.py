@@ -187,7 +187,7 @@ class SteeringEnv:
         """Advance one time step (T eq. 3.3), judge the configuration and reward it.
 
         Args:
-            atlas: terrains.
+            atlas: height maps of the terrains.
             params: weights of the reward.
             state: state of the episode.
             action: action of the network, in [-1, 1]^4.

@@ -64,7 +64,7 @@ def reward(
         motion: motion of the root after the step.
         command: acceleration [m/s^2] and turn rate [rad/s].
         toward_goal: horizontal unit vector to the goal.
-        valid: 1 where the configuration satisfies the conditions, else 0.
+        valid: number that is 1 where the configuration satisfies the conditions, else 0.
     """
     limits = config.limits
     desired = config.desired_speed * toward_goal

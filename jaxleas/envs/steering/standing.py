@@ -16,7 +16,7 @@ def standing_position(
 
     Args:
         robot: robot that stands.
-        atlas: terrains.
+        atlas: height maps of the terrains.
         map_index: terrain of each root.
         horizontal: x, y of each root [m].
     """
