@@ -10,8 +10,8 @@ from jaxleas.terrain import Scene, is_vertical, scale_for
 from jaxleas.types import GuidePath, InputError
 
 STEP, TURN, TIME = 0.02, 0.05, 0.2
-"""Largest distance [m] and turn [rad] between two configurations, and their interval [s], as the
-steering task has them by default."""
+"""Largest distance [m] and turn [rad] between two configurations, and their interval [s], as in
+guide paths at the usual speed of 0.1 m/s."""
 LOWER, HIGHER = 0.10, 0.03
 """At the start the root stands as high above the feet as the first root does above their middle,
 but at most this far below and above the walking height of a robot with legs like Talos's [m]."""

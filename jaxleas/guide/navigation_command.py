@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from jaxleas.guide.registry import Method, SteeringName, find_method
+from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
 
@@ -26,6 +27,7 @@ def navigate(
     steering: SteeringName = "leas",
     planner: Literal["rrt", "prm", "none"] = "rrt",
     policy: Path | None = None,
+    robot: str | None = None,
     limit: float = 20.0,
     connections: int | None = None,
     seed: int = 0,
@@ -45,6 +47,8 @@ def navigate(
             direct walk only.
         policy: a run folder, a policy.npz or an .onnx, which leas needs; the other methods use its
             task if it is given.
+        robot: robot that walks, where no policy says it: a name, or the path of its .json; talos by
+            default.
         limit: time after which the best partial path is written [s].
         connections: maximum number of connections that the search may try; by default as many as
             the time allows.
@@ -79,7 +83,7 @@ def navigate(
         import_ompl()
     keep_compiled_programs()
     named = find_method(steering)
-    env, method = _steering(named, policy)
+    env, method = _steering(named, policy, robot)
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
@@ -114,7 +118,9 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
     return (numbers[0], numbers[1]), numbers[2] if len(numbers) == 3 else None
 
 
-def _steering(method: Method, policy: Path | None) -> "tuple[SteeringEnv, SteeringMethod]":
+def _steering(
+    method: Method, policy: Path | None, robot: str | None
+) -> "tuple[SteeringEnv, SteeringMethod]":
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
 
@@ -123,9 +129,14 @@ def _steering(method: Method, policy: Path | None) -> "tuple[SteeringEnv, Steeri
             raise InputError(
                 f"--steering {method.name} needs --policy: a run folder, a .npz or an .onnx"
             )
-        env = SteeringEnv(SteeringConfig())
+        env = SteeringEnv(SteeringConfig.for_robot(robot or DEFAULT_ROBOT))
         return env, method.make(env, None)
     loaded = load_policy(policy)
+    if robot not in (None, loaded.config.robot):
+        raise InputError(
+            f"--robot {robot}: the policy {policy} is for {loaded.config.robot}; leave --robot out,"
+            " or give another policy"
+        )
     env = SteeringEnv(loaded.config)
     return env, method.make(env, loaded)
 

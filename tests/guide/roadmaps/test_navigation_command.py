@@ -1,10 +1,12 @@
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from jaxleas import cli
 from jaxleas.guide import read_guide_paths
+from jaxleas.robots import load_robot
 from jaxleas.terrain import HeightMap, write_height_map, write_scene
 from jaxleas.terrain.scene import Scene
 from jaxleas.training.policy import write_policy
@@ -142,3 +144,15 @@ def test_a_start_inside_what_no_height_map_shows_is_refused(tmp_path):
     )
     (path,) = read_guide_paths(tmp_path / "out.npz").paths
     assert path.valid[0]
+
+
+def test_another_robot_walks_at_its_own_height(terrain, tmp_path):
+    out = tmp_path / "guide.npz"
+    navigate(terrain, out, "--planner", "none", "--robot", "g1", goal="-1.5,1.5")
+    (path,) = read_guide_paths(out).paths
+    np.testing.assert_allclose(path.position[0, 2], load_robot("g1").walking_height, atol=1e-5)
+    policy = Path(__file__).parents[3] / "pretrained" / "leas_p1.npz"
+    with pytest.raises(InputError, match=r"leas_p1\.npz is for talos; leave --robot out"):
+        navigate(terrain, out, "--robot", "g1", "--policy", str(policy))
+    with pytest.raises(InputError, match="there is no robot 'g2'"):
+        navigate(terrain, out, "--robot", "g2")
