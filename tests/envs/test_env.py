@@ -9,7 +9,7 @@ from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import RootMotion
 
-from .worlds import bumpy, flat, height_map, plan_to, standing, world_of
+from .worlds import bumpy, flat, height_map, route_to, standing, world_of
 
 
 def make(observation="thesis144", **changes):
@@ -68,7 +68,7 @@ def test_steps_equal_the_slow_twin(observation):
     heights = height_map(bumpy)
     world = world_of(heights)
     goal = np.array([3.0, 1.0])
-    state = env.start(standing(env, [[-1.0, 0.5]], 0.3), plan_to(goal, 1))
+    state = env.start(standing(env, [[-1.0, 0.5]], 0.3), route_to(goal, 1))
     twin = (np.array([-1.0, 0.5, env.robot.walking_height]), np.zeros(3), 0.3)
     rng = np.random.default_rng(0)
     step = jax.jit(env.step)
@@ -103,7 +103,7 @@ def random_batch(env, count=64, seed=3):
 
 def outcomes(env, weights, heights, motion, goal, action):
     count = len(motion.yaw)
-    state = env.start(motion, plan_to(goal, count))
+    state = env.start(motion, route_to(goal, count))
     return jax.jit(env.step)(world_of(heights).atlas, weights, state, action)
 
 
@@ -160,7 +160,7 @@ def test_walking_off_the_ground_terminates_and_is_not_a_truncation():
     env, weights = make()
     cliff = height_map(lambda x, y: np.where(x < 1.0, 0.0, np.nan))
     atlas = world_of(cliff).atlas
-    state = env.start(standing(env, [[0.5, 0.0]], 0.0), plan_to([4.0, 0.0], 1))
+    state = env.start(standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     step = jax.jit(env.step)
     for _ in range(200):
         state, outcome = step(atlas, weights, state, jnp.array([[1.0, 0.0, 0.0, 0.0]]))
@@ -176,7 +176,7 @@ def test_walking_off_the_ground_terminates_and_is_not_a_truncation():
 def test_running_into_a_wall_terminates():
     env, weights = make()
     wall = height_map(lambda x, y: np.where(x < 1.0, 0.0, 1.5))
-    state = env.start(standing(env, [[0.5, 0.0]], 0.0), plan_to([4.0, 0.0], 1))
+    state = env.start(standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     step = jax.jit(env.step)
     for _ in range(200):
         state, outcome = step(
@@ -192,7 +192,7 @@ def test_running_into_a_wall_terminates():
 def test_an_episode_is_cut_after_its_steps_while_valid():
     env, weights = make(episode_steps=5)
     atlas = world_of(height_map(flat)).atlas
-    state = env.start(standing(env, [[0.0, 0.0]], 0.0), plan_to([4.0, 0.0], 1))
+    state = env.start(standing(env, [[0.0, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     flags = []
     for _ in range(5):
         state, outcome = jax.jit(env.step)(atlas, weights, state, jnp.zeros((1, 4)))
@@ -204,7 +204,7 @@ def test_a_goal_is_replaced_when_reached_and_when_its_time_is_up():
     env, weights = make()
     atlas = world_of(height_map(flat)).atlas
     places = [[0.0, 0.0], [-2.0, 0.0]]
-    state = env.start(standing(env, places, 0.0), plan_to([0.1, 0.0], 2, steps=3))
+    state = env.start(standing(env, places, 0.0), route_to([0.1, 0.0], 2, steps=3))
     indices, reached = [], []
     for _ in range(3):
         state, outcome = jax.jit(env.step)(atlas, weights, state, jnp.zeros((2, 4)))
@@ -219,7 +219,7 @@ def test_any_batch_shape_gives_the_same_numbers():
     env, weights = make()
     atlas = world_of(height_map(bumpy)).atlas
     motion, action = random_batch(env, 12)
-    state = env.start(motion, plan_to([1.0, 1.0], 12))
+    state = env.start(motion, route_to([1.0, 1.0], 12))
     reshape = lambda leaf: leaf.reshape(3, 4, *leaf.shape[1:])  # noqa: E731
     _, one = env.step(atlas, weights, jax.tree.map(lambda leaf: leaf[5], state), action[5])
     _, row = env.step(atlas, weights, state, action)
@@ -240,7 +240,7 @@ def test_the_step_compiles_once():
         return env.step(atlas, weights, state, action)
 
     step = jax.jit(counted)
-    state = env.start(standing(env, [[0.0, 0.0]] * 4, 0.0), plan_to([1.0, 0.0], 4))
+    state = env.start(standing(env, [[0.0, 0.0]] * 4, 0.0), route_to([1.0, 0.0], 4))
     for _ in range(5):
         state, _ = step(state, jnp.zeros((4, 4)))
     assert traces == 1
@@ -250,6 +250,6 @@ def test_a_condition_of_ones_own_ends_episodes():
     config = SteeringConfig()
     env = SteeringEnv(config, condition=lambda heights, motion: motion.position[..., 0])
     atlas = world_of(height_map(flat)).atlas
-    state = env.start(standing(env, [[-1.0, 0.0], [1.0, 0.0]], 0.0), plan_to([2.0, 0.0], 2))
+    state = env.start(standing(env, [[-1.0, 0.0], [1.0, 0.0]], 0.0), route_to([2.0, 0.0], 2))
     _, outcome = env.step(atlas, RewardParams.of(config.reward), state, jnp.zeros((2, 4)))
     assert outcome.terminated.tolist() == [True, False]

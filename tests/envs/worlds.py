@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 
-from jaxleas.envs.steering import Plan, SteeringEnv, World
+from jaxleas.envs.steering import Route, SteeringEnv, World
 from jaxleas.envs.steering.state import GOALS
 from jaxleas.terrain.atlas import make_atlas
 from jaxleas.terrain.height_map import HeightMap
@@ -59,10 +59,10 @@ def standing(env: SteeringEnv, places, yaw, ground=0.0) -> RootMotion:
     )
 
 
-def plan_to(goal, count: int, steps: int = 10_000) -> Plan:
+def route_to(goal, count: int, steps: int = 10_000) -> Route:
     """Everybody is sent to one goal, then to the origin for ever."""
     goals = jnp.zeros((count, GOALS, 2)).at[:, 0].set(jnp.asarray(goal)[None])
-    return Plan(
+    return Route(
         map_index=jnp.zeros(count, dtype=jnp.int32),
         goals=goals,
         goal_steps=jnp.full((count, GOALS), steps, dtype=jnp.int32),

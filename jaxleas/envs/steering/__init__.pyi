@@ -19,6 +19,7 @@ from .starts import begin as begin
 from .starts import draw_starts as draw_starts
 from .state import GOALS as GOALS
 from .state import Plan as Plan
+from .state import Route as Route
 from .state import SeenResult as SeenResult
 from .state import SteeringResult as SteeringResult
 from .state import SteeringState as SteeringState

@@ -26,7 +26,7 @@ from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, wr
 from jaxleas.envs.steering.reward import RewardParams, reward
 from jaxleas.envs.steering.state import (
     GOALS,
-    Plan,
+    Route,
     SeenResult,
     SteeringResult,
     SteeringState,
@@ -132,16 +132,18 @@ class SteeringEnv:
         count = surface_count(heights, layout.rows, layout.columns, self.height_range)
         return jnp.concatenate([observation, count[..., None]], axis=-1)
 
-    def start(self, motion: RootMotion, plan: Plan, memory: Any = ()) -> SteeringState:
+    def start(self, motion: RootMotion, route: Route, memory: Any = ()) -> SteeringState:
         """Return the state at the beginning of an episode.
 
         Args:
             motion: motion of the root.
-            plan: plan of the episode.
+            route: route of the episode.
             memory: memory that the foresight's `begin` returned; empty without foresight.
         """
-        zero = jnp.zeros_like(plan.map_index)
-        return SteeringState(motion, plan, goal_index=zero, goal_age=zero, step=zero, memory=memory)
+        zero = jnp.zeros_like(route.map_index)
+        return SteeringState(
+            motion, route, goal_index=zero, goal_age=zero, step=zero, memory=memory
+        )
 
     def goal(self, state: SteeringState) -> Float[Array, "*batch 2"]:
         """Return the goal that is sought now [m]."""

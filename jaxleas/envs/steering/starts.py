@@ -11,7 +11,7 @@ from jaxleas.envs import Starts, pool_of, take
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import OwnStarts, draw_own_starts
 from jaxleas.envs.steering.standing import standing_position
-from jaxleas.envs.steering.state import GOALS, Plan, SteeringState
+from jaxleas.envs.steering.state import GOALS, Route, SteeringState
 from jaxleas.envs.steering.world import World
 from jaxleas.types import RootMotion, is_ground
 
@@ -48,26 +48,26 @@ def draw_starts(
     keys = jax.random.split(key, 8 if needs_more else 5)
     link_key, place_key, motion_key, goal_key, wander_key, *further = keys
     link = jnp.searchsorted(world.cumulative_share, jax.random.uniform(link_key, (count,)))
-    plan = _draw_plan(env, world, link, goal_key)
+    route = _draw_route(env, world, link, goal_key)
     motion = _draw_motion(env, world, link, place_key, motion_key)
     own = None
     if world.own is not None:
         own = draw_own_starts(world.own, further[1], count, GOALS)
-        plan, motion = _put_on_files(env, world, own, plan, motion, further[2])
-    heights = env.local_heights(world.atlas, plan.map_index, motion)
+        route, motion = _put_on_files(env, world, own, route, motion, further[2])
+    heights = env.local_heights(world.atlas, route.map_index, motion)
     valid = env.condition(heights, motion) >= 0.0
     memory: Any = ()
     if env.foresight is not None:
         chance = jax.random.uniform(further[0], (count,))
         foreseen, memory = env.foresight.begin(heights, motion, chance)
         valid &= foreseen >= 0.0
-    state = env.start(motion, plan, memory)
+    state = env.start(motion, route, memory)
     wanders = jax.random.bernoulli(wander_key, wander_share, (count,))
     if own is not None:
         wanders &= ~own.chosen  # their first goal is random anyway
     state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
-    arrival = _arrival(env, world, motion, plan)
-    arrival_heights = env.local_heights(world.atlas, plan.map_index, arrival)
+    arrival = _arrival(env, world, motion, route)
+    arrival_heights = env.local_heights(world.atlas, route.map_index, arrival)
     arrives = env.condition(arrival_heights, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
     if world.own is not None and own is not None:
@@ -122,41 +122,41 @@ def _draw_motion(
 
 
 def _put_on_files(
-    env: SteeringEnv, world: World, own: OwnStarts, plan: Plan, motion: RootMotion, key: Array
-) -> tuple[Plan, RootMotion]:
-    """Return plans and motions, replaced where a candidate starts on a terrain file."""
+    env: SteeringEnv, world: World, own: OwnStarts, route: Route, motion: RootMotion, key: Array
+) -> tuple[Route, RootMotion]:
+    """Return routes and motions, replaced where a candidate starts on a terrain file."""
     low, high = env.robot.start_heights
     spread = jax.random.uniform(key, (len(own.chosen), 1), minval=low, maxval=high)
     position = (
         standing_position(env.robot, world.atlas, own.map_index, own.start).at[:, 2:].add(spread)
     )
-    plan = plan.replace(  # type: ignore[attr-defined]
-        map_index=jnp.where(own.chosen, own.map_index, plan.map_index),
-        goals=jnp.where(own.chosen[:, None, None], own.goals, plan.goals),
+    route = route.replace(  # type: ignore[attr-defined]
+        map_index=jnp.where(own.chosen, own.map_index, route.map_index),
+        goals=jnp.where(own.chosen[:, None, None], own.goals, route.goals),
     )
     position = jnp.where(own.chosen[:, None], position, motion.position)
-    return plan, motion.replace(position=position)  # type: ignore[attr-defined]
+    return route, motion.replace(position=position)  # type: ignore[attr-defined]
 
 
-def _arrival(env: SteeringEnv, world: World, motion: RootMotion, plan: Plan) -> RootMotion:
+def _arrival(env: SteeringEnv, world: World, motion: RootMotion, route: Route) -> RootMotion:
     """Return the robot standing at its first goal, heading the way it came."""
-    goal = plan.goals[:, 0]
+    goal = route.goals[:, 0]
     offset = goal - motion.position[:, :2]
     return RootMotion(
-        position=standing_position(env.robot, world.atlas, plan.map_index, goal),
+        position=standing_position(env.robot, world.atlas, route.map_index, goal),
         velocity=jnp.zeros_like(motion.velocity),
         yaw=jnp.arctan2(offset[:, 1], offset[:, 0]),
     )
 
 
-def _draw_plan(env: SteeringEnv, world: World, link: Array, key: Array) -> Plan:
+def _draw_route(env: SteeringEnv, world: World, link: Array, key: Array) -> Route:
     first_key, later_key, steps_key = jax.random.split(key, 3)
     count = len(link)
     first = _uniform_in(world.goal_area[link], first_key)
     arena = jnp.broadcast_to(world.arena_area[link][:, None], (count, GOALS - 1, 4))
     later = _uniform_in(arena, later_key)
     low, high = env.config.goal_steps
-    return Plan(
+    return Route(
         map_index=world.map_index[link],
         goals=jnp.concatenate([first[:, None], later], axis=1),
         # The first goal, across the link, stays until it is reached (T sec. 3.4).

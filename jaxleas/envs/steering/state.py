@@ -13,8 +13,8 @@ GOALS = 4  # goals drawn ahead for an episode: more than its steps can use up
 
 
 @struct.dataclass
-class Plan:
-    """The plan of an episode: its terrain and the goals that it has, one after another.
+class Route:
+    """The route of an episode: its terrain and the goals that it has, one after another.
 
     It is drawn whole at the start of an episode, so that a step needs no randomness of its own.
 
@@ -30,13 +30,17 @@ class Plan:
     goal_steps: Int[Array, "*batch goals"]
 
 
+Plan = Route
+"""The former name of `Route`."""
+
+
 @struct.dataclass
 class SteeringState:
     """One episode in progress.
 
     Attributes:
         motion: motion of the root.
-        plan: plan of the episode.
+        plan: route of the episode, under the name that it has in checkpoints.
         goal_index: index of the current goal.
         goal_age: number of steps since that goal was set.
         step: number of steps since the episode began.
@@ -44,7 +48,7 @@ class SteeringState:
     """
 
     motion: RootMotion
-    plan: Plan
+    plan: Route
     goal_index: Int[Array, "*batch"]
     goal_age: Int[Array, "*batch"]
     step: Int[Array, "*batch"]
