@@ -43,6 +43,10 @@ from .scenarios.courses import rotation as rotation
 from .scenarios.detours import dead_end as dead_end
 from .scenarios.detours import hole as hole
 from .scenarios.detours import wall as wall
+from .scenarios.limit import Bar as Bar
+from .scenarios.limit import Limit as Limit
+from .scenarios.limits import LIMITS as LIMITS
+from .scenarios.limits import limit_scenario as limit_scenario
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.transitions import TransitionKind as TransitionKind
 from .scenarios.transitions import transition as transition

@@ -10,6 +10,7 @@ from jaxleas.terrain.links import Area
 from jaxleas.terrain.scale import PUBLISHED, Scale
 from jaxleas.terrain.scenarios.courses import circuit, long_course, rotation
 from jaxleas.terrain.scenarios.detours import dead_end, hole, hole_rim, wall
+from jaxleas.terrain.scenarios.limits import LIMITS
 from jaxleas.terrain.scenarios.scenario import Scenario, around
 from jaxleas.terrain.scenarios.transitions import (
     EVALUATION_KINDS,
@@ -36,6 +37,7 @@ SCENARIOS: Mapping[str, Callable[[int], Scenario]] = MappingProxyType(
         "dead_end_void": lambda seed: dead_end("void", seed),
         "dead_end_wall": lambda seed: dead_end("wall", seed),
         "dead_end_platform": lambda seed: dead_end("platform", seed),
+        **LIMITS,
         **{
             f"evaluation_terrain_{kind}": lambda seed, index=index: evaluation_terrain(seed)[index]
             for index, kind in enumerate(EVALUATION_KINDS)

@@ -9,6 +9,7 @@ import numpy as np
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.links import Area
 from jaxleas.terrain.polygons import box_faces
+from jaxleas.terrain.scenarios.limit import Limit
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.tiles import TileFrame, TilePolygons
 
@@ -29,6 +30,7 @@ class Scenario:
         goal_area: rectangle of the goal [m].
         waypoints: points (x, y) to reach in order [m]; only for courses and circuits.
         crossing: whether the goal can be reached; if not, the robot must stop and stay valid.
+        limit: obstacle that decides whether the goal can be reached, which depends on the robot.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Scenario:
     goal_area: Area
     waypoints: tuple[tuple[float, float], ...] = ()
     crossing: bool = True
+    limit: Limit | None = None
 
     def scaled(self, factor: float) -> "Scenario":
         """Return the same terrain and task with every length multiplied; 1 returns this one.
