@@ -7,10 +7,17 @@ from pathlib import Path
 
 from jaxleas.distillation.config import JudgeConfig
 from jaxleas.envs.steering import SteeringEnv
-from jaxleas.evaluation import Bookkeeping, CellResult, Planner, judge_exact, make_suite, walker
+from jaxleas.evaluation import (
+    Bookkeeping,
+    CellResult,
+    Planner,
+    judge_exact,
+    make_suite,
+    suited,
+    walker,
+)
 from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide import leas
-from jaxleas.terrain import scale_for
 from jaxleas.training import Policy
 from jaxleas.types import InputError
 
@@ -48,7 +55,7 @@ def judge_round(
     env = SteeringEnv(policy.config.under_standard_conditions())
     cells: list[CellResult] = []
     for name in config.suites:
-        suite = make_suite(name, config.starts, held_out=True).scaled(scale_for(env.robot))
+        suite = suited(make_suite(name, config.starts, held_out=True), env.robot)
         cells += judge_exact(
             env,
             {method: walker(env, leas(env, policy))},

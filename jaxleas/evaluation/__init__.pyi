@@ -4,6 +4,8 @@ from .comparison import side_by_side_file as side_by_side_file
 from .contenders import Contenders as Contenders
 from .contenders import make_contenders as make_contenders
 from .contenders import parse_policies as parse_policies
+from .crossability import can_cross as can_cross
+from .crossability import crossability as crossability
 from .exact import Bookkeeping as Bookkeeping
 from .exact import Judged as Judged
 from .exact import Planner as Planner
@@ -26,9 +28,7 @@ from .figure_file import read_figures as read_figures
 from .figures import BASIC as BASIC
 from .figures import COURSE as COURSE
 from .height_band import height_band as height_band
-from .judge import CellRollOut as CellRollOut
 from .judge import judge as judge
-from .judge import roll_out_cell as roll_out_cell
 from .progress import Reporter as Reporter
 from .recipes import RECIPES as RECIPES
 from .refusal import load_refusal as load_refusal
@@ -45,10 +45,13 @@ from .risk_dial import as_json as as_json
 from .risk_dial import foresee as foresee
 from .risk_dial import join as join
 from .risk_dial import sweep as sweep
+from .roll_outs import CellRollOut as CellRollOut
+from .roll_outs import roll_out_cell as roll_out_cell
 from .starts import Grounds as Grounds
 from .starts import draw_starts as draw_starts
 from .starts import make_grounds as make_grounds
 from .statistics import wilson_interval as wilson_interval
+from .suited import suited as suited
 from .suites import SUITED_TASKS as SUITED_TASKS
 from .suites import SUITES as SUITES
 from .suites import Cell as Cell

@@ -167,15 +167,25 @@ def _reaching(
     side = np.linspace(-UNDER_ROOT, UNDER_ROOT, round(2.0 * UNDER_ROOT / POINTS) + 1)
     points = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
     intervals = [limb.range_of_motion.z_interval(points) for limb in robot.legs]
-    under = (places[..., None, :] + points @ _axes(heading)).astype(np.float32)
-    reached = np.zeros((*places.shape[:2], len(heights)), dtype=bool)
-    for covers, top in _tops(limit, under, on_bars):
-        below = top - heights
-        within = np.zeros((len(points), len(heights)), dtype=bool)
-        for lowest, highest in intervals:  # NaN, where the leg does not reach, compares as false
-            within |= (below >= lowest[:, None]) & (below <= highest[:, None])
-        reached |= covers.astype(np.float32) @ within.astype(np.float32) > 0.5
-    return reached
+
+    def reached(places: Float[np.ndarray, "X Y 2"]) -> Bool[np.ndarray, "X Y Z"]:
+        under = (places[..., None, :] + points @ _axes(heading)).astype(np.float32)
+        found = np.zeros((*places.shape[:2], len(heights)), dtype=bool)
+        for covers, top in _tops(limit, under, on_bars):
+            below = top - heights
+            within = np.zeros((len(points), len(heights)), dtype=bool)
+            for lowest, highest in intervals:  # NaN where the leg does not reach: false
+                within |= (below >= lowest[:, None]) & (below <= highest[:, None])
+            found |= covers.astype(np.float32) @ within.astype(np.float32) > 0.5
+        return found
+
+    # Only near the bars does it matter where along the obstacle the root is.
+    widest = max((bar.thickness for bar in limit.bars), default=0.0)
+    near = np.abs(places[:, 0, 0]) <= math.sqrt(2.0) * UNDER_ROOT + 0.5 * widest
+    everywhere = np.repeat(reached(places[:, :1]), places.shape[1], axis=1)
+    if places.shape[1] > 1:
+        everywhere[near] = reached(places[near])
+    return everywhere
 
 
 def _tops(

@@ -10,14 +10,16 @@ from jaxtyping import Bool
 
 from jaxleas.contacts import PlannerSettings
 from jaxleas.envs.steering import SteeringEnv
+from jaxleas.evaluation.exactly import judged_exactly
 from jaxleas.evaluation.judge import CellRollOut, roll_out_cell, rounded, summarise
 from jaxleas.evaluation.result_file import CellResult
 from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
+from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.guide import SteeringMethod, leas, load_policy
 from jaxleas.labels import Judge
-from jaxleas.terrain import Scene, scale_for
+from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, Verdict
 
 Walker = Callable[[Grounds, Starts, int], CellRollOut]
@@ -174,7 +176,10 @@ def judge_exact(
                 if result is None:
                     starts = starts or draw_starts(env, grounds, cell, suite.stream())
                     bookkeeping.on_guides(cell, method, planner, 0)
-                    walked = walked or walks(grounds, starts, suite.steps_of(cell))
+                    if walked is None:
+                        walked = walks(grounds, starts, suite.steps_of(cell))
+                        if cell.exactly:
+                            walked = judged_exactly(env.robot, cell, walked)
                     if planner is None:
                         result = summarise(cell, method, walked, time_step)
                     else:
@@ -200,12 +205,11 @@ def exact_success(
     found = load_policy(policy)
     env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
-    scale = scale_for(env.robot)
     with Judge(planner, settings, robot=found.config.robot) as judge:
         shares = [
             cell.planned or 0.0
             for suite in suites
-            for cell in judge_exact(env, walkers, suite.scaled(scale), {planner: judge})
+            for cell in judge_exact(env, walkers, suited(suite, env.robot), {planner: judge})
         ]
     return sum(shares) / len(shares)
 

@@ -12,7 +12,8 @@ from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.starts import Grounds
-from jaxleas.evaluation.suites import REPORTED, Suite, make_suite
+from jaxleas.evaluation.suited import suited
+from jaxleas.evaluation.suites import REPORTED, REPORTED_IF_EVALUATED, Suite, make_suite
 from jaxleas.guide import BASELINES, LEAS, SteeringMethod, load_policy, policy_file
 from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
@@ -104,7 +105,7 @@ def run_evaluations(
     basis: ReportBasis,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Evaluation]:
-    """Return a run's evaluations on all suites: those it holds, and the others, made and kept now.
+    """Return the evaluations of a run's report: those it holds, and the others, made and kept now.
 
     An evaluation of another policy than the run's present one, on scenes of another scale, or an
     unreadable one, is made again.
@@ -125,13 +126,16 @@ def run_evaluations(
             grounds = None if suite is None else basis.grounds
             evaluation = examine(
                 candidate,
-                suite or make_suite(name).scaled(scale),
+                suite or suited(make_suite(name), candidate.env.robot),
                 progress=progress,
                 grounds=grounds,
             )
             write_evaluation(path, evaluation)
         evaluations.append(evaluation)
-    return evaluations
+    more = (
+        kept_evaluation(evaluation_file(run, name), candidate) for name in REPORTED_IF_EVALUATED
+    )
+    return [*evaluations, *(each for each in more if each is not None)]
 
 
 def kept_evaluation(path: Path, candidate: Candidate) -> Evaluation | None:

@@ -12,10 +12,10 @@ from jaxleas.evaluation.figure_file import FigureFile, Figures, read_figures, wr
 from jaxleas.evaluation.figures import KEEP_EVERY, Questions, figure_cells, measure_figures
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import now
+from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import KINO, ResultName
 from jaxleas.labels import planner_workers, settings_of
-from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
 METHODS = (KINO.key, POLICY)
@@ -70,7 +70,7 @@ def figures(
         raise InputError("--parameters keep_every: give the numbers to measure as --keep-every")
     stated = settings_from(find_planner(planner, [planner]), **given)
     candidate = load_candidate(run)
-    suite = suite.scaled(scale_for(candidate.env.robot))
+    suite = suited(suite, candidate.env.robot)
     robot = candidate.env.config.robot
     settings = stated.for_robot(robot)
     if note := stated.note_for(robot):

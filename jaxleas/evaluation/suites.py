@@ -19,8 +19,12 @@ HELD_OUT_SUFFIX = "_held_out"
 SUITES = tuple(RECIPES)
 SUITED_TASKS = ("steering",)
 """Tasks whose policies the suites judge."""
-REPORTED = tuple(name for name, recipe in RECIPES.items() if recipe.in_report)
+REPORTED = tuple(name for name, recipe in RECIPES.items() if recipe.in_report == "always")
 """Suites that every report includes; the others take longer or are requested by name."""
+REPORTED_IF_EVALUATED = tuple(
+    name for name, recipe in RECIPES.items() if recipe.in_report == "if evaluated"
+)
+"""Suites that the report of a run includes once the run was evaluated on them."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,7 @@ class Cell:
         speed: speed at the start, along the heading [m/s].
         aim: "crossing": the way ahead is the scenario's; "goal": from each start to its goal.
         steps: number of steps after which a roll-out is cut, where it is not the suite's.
+        exactly: whether roll-outs are judged on the polygons of the scenes, too.
     """
 
     name: str
@@ -49,6 +54,7 @@ class Cell:
     speed: float = 0.0
     aim: Literal["crossing", "goal"] = "crossing"
     steps: int | None = None
+    exactly: bool = False
 
     @property
     def key(self) -> tuple[str, float, float, float]:
@@ -161,4 +167,5 @@ def _cell(row: Row, scenarios: tuple[Scenario, ...], starts: int, recipe: Recipe
         row.speed,
         row.aim,
         row.steps,
+        recipe.exactly,
     )

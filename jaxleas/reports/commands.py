@@ -22,6 +22,7 @@ from jaxleas.evaluation import (
     read_evaluation,
     run_evaluations,
     side_by_side_file,
+    suited,
     write_evaluation,
 )
 from jaxleas.guide import ResultName
@@ -107,7 +108,7 @@ def evaluate(
         raise InputError(f"--processes is {processes}; give 1 or more")
     refusal = load_refusal(surrogate, threshold, names)
     candidate = load_candidate(run, refusal)
-    chosen = chosen.scaled(scale_for(candidate.env.robot))
+    chosen = suited(chosen, candidate.env.robot)
     folder = Path(run) if Path(run).is_dir() and refusal is None else None
     if not side_by_side:
         with Reporter() as reporter:

@@ -1,7 +1,7 @@
 """A straight obstacle across a course, as numbers."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,15 @@ class Limit:
         return all(
             any(other.top >= bar.top and other.thickness >= bar.thickness for other in endless)
             for bar in self.bars
+        )
+
+    def scaled(self, factor: float) -> "Limit":
+        """Return the obstacle with every length multiplied by `factor`."""
+        return Limit(
+            rise=factor * self.rise,
+            gap=factor * self.gap,
+            bars=tuple(Bar(*(factor * size for size in astuple(bar))) for bar in self.bars),
+            period=factor * self.period,
         )
 
     def worse(self, spare: float) -> "Limit":

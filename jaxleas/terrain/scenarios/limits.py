@@ -69,13 +69,13 @@ def railing(seed: int) -> Scenario:
 
 
 def posts(seed: int) -> Scenario:
-    """Return level ground with a row of posts, 0.4 to 1.2 m of room between them, at any angle.
+    """Return level ground with a row of posts, 0.2 to 1 m of room between them, at any angle.
 
     The posts are square, 3 to 12 cm thick, and 0.9 to 2 m high.
     """
 
     def draw(rng: np.random.Generator) -> Limit:
-        thick, high, room = rng.uniform(0.03, 0.12), rng.uniform(0.9, 2.0), rng.uniform(0.4, 1.2)
+        thick, high, room = rng.uniform(0.03, 0.12), rng.uniform(0.9, 2.0), rng.uniform(0.2, 1.0)
         return Limit(bars=(Bar(thick, thick, 0.0, high),), period=thick + room)
 
     return _scenario("posts", seed, draw)
@@ -98,8 +98,8 @@ LIMITS: Mapping[str, Callable[[int], Scenario]] = MappingProxyType(
 def limit_scenario(name: str, limit: Limit, angle: float, shift: float = 0.0) -> Scenario:
     """Return level ground with an obstacle across it.
 
-    The course is 6 m along x and 4 m across. Starts: 0.9 to 1.6 m before the middle of the
-    obstacle, in the middle metre; goal: 0.3 m around a point 1.5 m behind its middle.
+    The course is 6 m along x and 4 m across. Starts: 1.2 to 1.9 m before the middle of the
+    obstacle and up to 0.3 m to either side; goal: 0.3 m around a point 1.5 m behind its middle.
 
     Args:
         name: name of the scenario.
@@ -111,7 +111,7 @@ def limit_scenario(name: str, limit: Limit, angle: float, shift: float = 0.0) ->
     return Scenario(
         name,
         compose([_ground(limit, angle), *_bars(limit, angle, shift)]),
-        ((-1.6, -0.9, -0.5, 0.5),),
+        ((-1.9, -1.2, -0.3, 0.3),),
         around(goal, 0.0, 0.3),
         limit=limit,
     )

@@ -60,6 +60,7 @@ class Scenario:
             start_areas=tuple(_area(each, factor) for each in self.start_areas),
             goal_area=_area(self.goal_area, factor),
             waypoints=tuple((factor * x, factor * y) for x, y in self.waypoints),
+            limit=None if self.limit is None else self.limit.scaled(factor),
         )
 
 
