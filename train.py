@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from jaxleas.cli_guard import UsageError, run_guarded
+from jaxleas.configuration import require_own_name
 
 # JAX takes a second to import: not before the command line is parsed.
 if TYPE_CHECKING:
@@ -132,8 +133,8 @@ def _conclude(config: "RunConfig", run: "RunFolder", allow: Sequence[str]) -> No
         return
     from jaxleas.reports import evaluate, report
 
-    evaluate(run.path, starts=config.final.starts)
-    export(run.path)
+    evaluate(run.path, starts=config.final.starts)  # by R* and C, as every run
+    export(run.path, allow=tuple(allow))
     report(run.path)
 
 
@@ -142,7 +143,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("config", nargs="?")
     parser.add_argument("--run-dir")
     parser.add_argument("--resume", metavar="RUN")
-    parser.add_argument("--allow", action="append", default=[], metavar="MODULE:CLASS")
+    parser.add_argument(
+        "--allow", action="append", default=[], type=require_own_name, metavar="MODULE:CLASS"
+    )
     parser.add_argument("--devices", type=_device_count, default="all", metavar="all|N")
     parser.add_argument("--coordinator", metavar="HOST:PORT")
     parser.add_argument("--process", metavar="I/N")

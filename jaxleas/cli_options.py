@@ -95,6 +95,8 @@ def _options_of_type(annotation: Any) -> dict[str, Any]:
         return {"choices": inner, "type": type(inner[0])}
     if origin is typing.Annotated:
         options = _options_of_type(inner[0])
+        parsers = [each.parse for each in inner[1:] if hasattr(each, "parse")]
+        options |= {"type": parsers[0]} if parsers else {}
         # A registry says what can be named; importing its class here would load NumPy for --help.
         listed = [f"({each.describe()})" for each in inner[1:] if hasattr(each, "describe")]
         return options | {"names": listed} if listed else options
@@ -103,8 +105,24 @@ def _options_of_type(annotation: Any) -> dict[str, Any]:
     if origin is tuple and Ellipsis not in inner:
         return {**_options_of_type(inner[0]), "nargs": len(inner)}
     if inspect.isclass(origin) and issubclass(origin, Sequence):
-        return {**_options_of_type(inner[0]), "nargs": "+"}
+        return {**_options_of_type(inner[0]), "nargs": "+", "action": _Gather}
     return {"type": annotation if inspect.isclass(annotation) else str}
+
+
+class _Gather(argparse.Action):
+    """Keep all values of an option, however often it is given; the first replace its default."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        del parser, option_string
+        before = getattr(namespace, self.dest)
+        given = () if before is self.default else before
+        setattr(namespace, self.dest, [*given, *values])
 
 
 def _plainest(members: list[Any]) -> Any:

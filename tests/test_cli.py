@@ -1,3 +1,5 @@
+import importlib
+import inspect
 import os
 import subprocess
 import sys
@@ -10,6 +12,7 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.cli_guard import UsageError, run_guarded
+from jaxleas.configuration import Allow
 from jaxleas.types.errors import InputError, JaxleasError
 
 
@@ -53,7 +56,8 @@ def walk_command(monkeypatch) -> None:
     CALLS.clear()
     rooms = {"room": SimpleNamespace(walk=walk)}
     monkeypatch.setattr(cli, "COMMANDS", {**cli.COMMANDS, "gait walk": ("room", "walk", "walk")})
-    monkeypatch.setattr(cli, "import_module", rooms.__getitem__)
+    find = cli.import_module
+    monkeypatch.setattr(cli, "import_module", lambda name: rooms.get(name) or find(name))
 
 
 def refusal(*arguments: str) -> str:
@@ -115,6 +119,33 @@ def test_a_mistake_is_one_sentence_with_the_nearest(line: str, expected: list[st
     sentence = refusal(*line.split())
     assert all(part in sentence for part in expected), sentence
     assert not CALLS
+
+
+def test_an_option_of_several_values_may_be_given_several_times() -> None:
+    cli.run(["gait", "walk", "p", "--out", "x", "--seeds", "1", "2", "--seeds", "3"])
+    assert CALLS[0]["seeds"] == [1, 2, 3]
+
+
+LOAD_NO_CODE = {
+    *("terrain show", "terrain import", "terrain generate", "terrain scenario"),
+    *("plan", "check", "contacts", "label"),  # a planner is named on the command line itself
+    *("runs", "compare"),  # plain values
+}
+
+
+@pytest.mark.parametrize("name", sorted(set(cli.COMMANDS) - LOAD_NO_CODE))
+def test_every_command_that_reads_a_policy_takes_the_same_option_for_code(name: str) -> None:
+    module, function, _ = cli.COMMANDS[name]
+    signature = inspect.signature(getattr(importlib.import_module(module), function))
+    allow = signature.parameters["allow"]
+    assert (allow.annotation, allow.default) == (Allow, ())
+    assert allow.kind is allow.KEYWORD_ONLY or function == "evaluate"
+
+
+@pytest.mark.parametrize("name", ["level_ground", "level_ground.LevelGround", ":LevelGround", "a:"])
+def test_the_option_for_code_takes_a_module_and_a_class(name: str) -> None:
+    with pytest.raises(InputError, match="is no MODULE:CLASS"):
+        cli.run(["export", "run", "--allow", name])
 
 
 def test_help_comes_from_the_docstring(capsys) -> None:

@@ -23,10 +23,13 @@ from .foresight import LookAround as LookAround
 from .foresight import Pick as Pick
 from .foresight import everyone as everyone
 from .named import STANDARD as STANDARD
+from .named import Named as Named
 from .named import NamedConditions as NamedConditions
 from .named import SurrogateSettings as SurrogateSettings
 from .named import harmless as harmless
+from .named import permission as permission
 from .named import pinned as pinned
+from .named import words_of as words_of
 from .points import extended as extended
 from .points import union_of_points as union_of_points
 from .reachability import Reachability as Reachability

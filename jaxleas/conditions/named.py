@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from jaxleas.conditions.catalogue import CONDITIONS, SURROGATE
-from jaxleas.configuration import Strict, is_own
+from jaxleas.configuration import Strict, is_own, misspelt
 from jaxleas.files import digest_of
 
 STANDARD = ("strict_reachability", "collision")
@@ -84,3 +84,24 @@ def harmless(named: tuple[Named, ...], allow: Collection[str] = ()) -> bool:
         allow: user's own code that may be run, as MODULE:CLASS.
     """
     return all(isinstance(each, str) and (each in CONDITIONS or each in allow) for each in named)
+
+
+def words_of(named: tuple[Named, ...]) -> str:
+    """Return conditions as a message lists them: each by its name, a surrogate by its file."""
+    return ", ".join(each if isinstance(each, str) else each.surrogate for each in named)
+
+
+def permission(named: tuple[Named, ...], allow: Collection[str] = ()) -> str:
+    """Return the end of a warning: what would permit conditions that are not `harmless`.
+
+    It is empty where a surrogate is among them: no option permits a file that another file names.
+
+    Args:
+        named: conditions that a file states.
+        allow: user's own code that may be run, as MODULE:CLASS.
+    """
+    if not all(isinstance(each, str) for each in named):
+        return ""
+    missing = [str(each) for each in named if each not in CONDITIONS and each not in allow]
+    hints = "".join(misspelt(each, allow) for each in missing)
+    return f"; if you trust their code, give --allow {' '.join(missing)}{hints}"

@@ -1,3 +1,5 @@
+from .allowance import Allow as Allow
+from .allowance import require_own_name as require_own_name
 from .bounds import Count as Count
 from .bounds import Fraction as Fraction
 from .bounds import NonNegative as NonNegative
@@ -19,6 +21,7 @@ from .own_code import methods_of as methods_of
 from .own_code import own_code as own_code
 from .registry import Registry as Registry
 from .registry import is_own as is_own
+from .registry import misspelt as misspelt
 from .strict import Strict as Strict
 from .values import require_field as require_field
 from .values import require_value as require_value

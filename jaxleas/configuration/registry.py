@@ -69,11 +69,9 @@ class Registry(Generic[Item]):
         if not is_own(name):
             raise InputError(f"there is no {self.kind} {name!r}{self.hint(name)}")
         if name not in allow:
-            close = difflib.get_close_matches(name, allow, n=1)
-            meant = f"; you allowed {close[0]}: is one of the two misspelt?" if close else ""
             raise InputError(
                 f"the {self.kind} {name} is code: if you trust it, give --allow {name} on the"
-                f" command line{meant}"
+                f" command line{misspelt(name, allow)}"
             )
         if (here := str(Path.cwd())) not in sys.path:
             sys.path.append(here)  # where the user's own modules are
@@ -95,6 +93,12 @@ class Registry(Generic[Item]):
 def is_own(name: str) -> bool:
     """Return whether a name is that of the user's own class, MODULE:CLASS."""
     return ":" in name
+
+
+def misspelt(name: str, allow: Collection[str]) -> str:
+    """Return the end of a message about code that may not be run: a name like it that may."""
+    close = difflib.get_close_matches(name, allow, n=1)
+    return f"; you allowed {close[0]}: is one of the two misspelt?" if close else ""
 
 
 def load(target: str, kind: str) -> Any:

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
-from jaxleas.configuration import Registry, is_own
+from jaxleas.configuration import Registry, is_own, misspelt
 from jaxleas.contacts.own_planner import JudgedByOwn, OwnPlanner
 from jaxleas.contacts.planner import Measure, Planner
 from jaxleas.types import InputError
@@ -51,9 +51,15 @@ def find_planner(name: str, allow: Collection[str] = ()) -> Planner:
     return JudgedByOwn(name, kind) if issubclass(kind, OwnPlanner) else kind(name)
 
 
-def title_of(name: str) -> str:
-    """Return a planner's title; for one of the user's own, which may no longer exist, its name."""
-    return (find_planner(name).title if name in PLANNERS else "") or name
+def title_of(name: str, allow: Collection[str] = ()) -> str:
+    """Return a planner's title; its name for the user's own, which may no longer exist.
+
+    Args:
+        name: name of the planner.
+        allow: planners of the user's own that may be imported for their title.
+    """
+    known = name in PLANNERS or name in allow
+    return (find_planner(name, allow).title if known else "") or name
 
 
 def measures_of(name: str) -> frozenset[Measure]:
@@ -61,25 +67,29 @@ def measures_of(name: str) -> frozenset[Measure]:
     return find_planner(name).measures if name in PLANNERS else frozenset()
 
 
-def permit(config: Path, planner: str, said: str | None) -> tuple[str, ...]:
-    """Return the code that may be imported for a planner that a file names.
+def permit(
+    config: Path, planner: str, said: str | None, allow: Collection[str] = ()
+) -> tuple[str, ...]:
+    """Return the code that may be imported where a file names a planner.
 
     Args:
         config: file that names the planner.
         planner: name of the planner in the file.
-        said: name given on the command line, if any.
+        said: name of the planner given on the command line, which permits it as --allow does.
+        allow: code given with --allow.
 
     Raises:
         InputError: the planner is code and was not given on the command line, or another was.
     """
-    if said is None and is_own(planner):
-        raise InputError(
-            f"{config} asks for the planner {planner}, which is code: if you trust it, give"
-            f" --planner {planner} as well"
-        )
     if said is not None and said != planner:
         raise InputError(f"{config} asks for the planner {planner}, not for {said}")
-    return () if said is None else (said,)
+    permitted = tuple(allow) if said is None else (*allow, said)
+    if is_own(planner) and planner not in permitted:
+        raise InputError(
+            f"{config} asks for the planner {planner}, which is code: if you trust it, give"
+            f" --allow {planner}{misspelt(planner, permitted)}"
+        )
+    return permitted
 
 
 def require_planner_name(name: str) -> str:

@@ -5,10 +5,10 @@ from pathlib import Path
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.faithful_practice import practise_faithfully
 from jaxleas.distillation.folder import RoundFolder, read_done
-from jaxleas.distillation.practice import practice_config, read_run
+from jaxleas.distillation.practice import practice_config, read_learned
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
-from jaxleas.envs.steering import SteeringEnv
+from jaxleas.envs.steering import Steering
 from jaxleas.training import read_policy
 
 
@@ -29,9 +29,9 @@ class AgainstPlanner:
         if not folder.practised.is_file():
             say(f"round {number}: practice, the exact planner in the loop")
             config = practice_config(place.config, place.run_config)
-            env, ground = SteeringEnv(config.env), place.ground
-            faithful = place.config.faithful
-            training = Faithful(config, faithful, env, ground.world, ground.scenes, place.judge)
+            task = Steering(config.env, config.terrain, allow=place.allow)
+            faithful, ground = place.config.faithful, place.ground
+            training = Faithful(config, faithful, task, ground.world, ground.scenes, place.judge)
             practise_faithfully(folder, training, before.learned)
         seconds = {"practice": read_done(folder.practised, "seconds")["seconds"]}
-        return Practised(read_policy(folder.policy), read_run(folder.run)[1], seconds=seconds)
+        return Practised(read_policy(folder.policy), read_learned(folder.run), seconds=seconds)

@@ -6,7 +6,7 @@ from typing import Any
 
 from jaxleas.distillation.folder import RoundFolder, read_done
 from jaxleas.distillation.labelling import Collection, label_round
-from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.practice import practice_config, practise, read_learned
 from jaxleas.distillation.rounds import Practised, Say
 from jaxleas.distillation.workplace import Workplace
 from jaxleas.labels import Oracle
@@ -45,9 +45,9 @@ class AgainstSurrogate:
             say(f"round {number}: practice")
             config = practice_config(place.config, place.run_config)
             foresight = SurrogateForesight(surrogate, place.config.practice.threshold, queue=True)
-            practise(folder, config, foresight, before.learned, place.devices)
+            practise(folder, config, foresight, before.learned, place.devices, place.allow)
         seconds["practice"] = read_done(folder.practised, "seconds")["seconds"]
-        learned = read_run(folder.run)[1]
+        learned = read_learned(folder.run)
         policy, report = read_policy(folder.policy), surrogate.report
         return Practised(policy, learned, labelled["guides"], seconds, report)
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from jaxleas.configuration import Allow
 from jaxleas.types import InputError
 
 
@@ -13,6 +14,7 @@ def distill(
     planner: str | None = None,
     processes: int | None = None,
     devices: int | None = None,
+    allow: Allow = (),
 ) -> None:
     """Refine a policy and a surrogate in turn, judged by the exact contact planner.
 
@@ -20,9 +22,11 @@ def distill(
         config: configuration of the distillation, YAML.
         out: folder to work in; the same command resumes where it was interrupted.
         start: run folder of the policy to begin with; by default one is trained first.
-        planner: planner of your own, MODULE:CLASS, repeated: a file alone cannot make code run.
+        planner: the configuration's planner, repeated: permits one of your own as --allow does.
         processes: number of processes that ask the planner; all cores by default.
         devices: number of devices that share the practice; all by default; each CPU core is one.
+        allow: your own code that the configuration or the run begun with names: a planner, a
+            condition.
     """
     import os
 
@@ -45,23 +49,23 @@ def distill(
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
     asked = load_config(DistillationConfig, config)
-    allow = permit(config, asked.planner, planner)
+    permitted = permit(config, asked.planner, planner, allow)
     ppo = first_run(asked, start).ppo
     if asked.mode == "surrogate":
         share_cores(ppo)
     sharing = choose_devices(devices or "all", ppo)
-    settled = open_folder(folder, asked, start, allow)
+    settled = open_folder(folder, asked, start, permitted)
     with FolderLock(folder.path, "the distillation", "give another --out"):
-        run = train_start(folder, settled, sharing)
+        run = train_start(folder, settled, sharing, permitted)
         count = processes or os.cpu_count() or 1
-        place = Workplace(settled, folder, str(run), count, sharing, allow)
+        place = Workplace(settled, folder, str(run), count, sharing, permitted)
         results = run_rounds(place, _Teller())
     print(table_of(results))
     beside = f"; {folder.surrogate}: its surrogate" if settled.mode == "surrogate" else ""
     print(f"{folder.policy}: the best round's policy{beside}")
 
 
-def report(run: Path, out: Path | None = None) -> Path:
+def report(run: Path, out: Path | None = None, *, allow: Allow = ()) -> Path:
     """Write a run's report as one self-contained HTML file.
 
     For a training: suites that the run was not yet judged on are judged first. For a distillation:
@@ -70,6 +74,8 @@ def report(run: Path, out: Path | None = None) -> Path:
     Args:
         run: a run folder, or a distillation's folder.
         out: file to write; by default RUN/report.html.
+        allow: a distillation's planner of your own, to call it by its title. A training's policy is
+            judged by R* and C, whatever its own conditions.
 
     Raises:
         InputError: the path is not such a folder, or holds no policy, or no round, yet.
@@ -82,7 +88,7 @@ def report(run: Path, out: Path | None = None) -> Path:
         return report_training(run, out)
     from jaxleas.distillation.report import write_distilled_report
 
-    path = write_distilled_report(Path(run), out)
+    path = write_distilled_report(Path(run), out, allow)
     print(f"written: {path}")
     return path
 

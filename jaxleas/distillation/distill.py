@@ -16,7 +16,7 @@ from jaxleas.distillation.judging import (
     mean_robustness,
     summary,
 )
-from jaxleas.distillation.practice import practice_config, practise, read_run
+from jaxleas.distillation.practice import practice_config, practise, read_learned
 from jaxleas.distillation.round_result import RoundResult
 from jaxleas.distillation.rounds import (
     Mode,
@@ -67,9 +67,9 @@ def _begin(place: Workplace, say: Say) -> Practised:
     if not folder.practised.is_file():
         say("round 0: practice without surrogate")
         config = practice_config(place.config, place.run_config, steps)
-        practise(folder, config, None, place.learned, place.devices)
+        practise(folder, config, None, place.learned, place.devices, place.allow)
     seconds = {"practice": read_done(folder.practised, "seconds")["seconds"]}
-    return Practised(read_policy(folder.policy), read_run(folder.run)[1], seconds=seconds)
+    return Practised(read_policy(folder.policy), read_learned(folder.run), seconds=seconds)
 
 
 def _judge(place: Workplace, number: int, practised: Practised, say: Say) -> RoundResult:

@@ -20,7 +20,7 @@ from jaxleas.distillation.config import FaithfulConfig, SteeringRun
 from jaxleas.distillation.cutting import Stream, cut, to_experience
 from jaxleas.distillation.episodes import Episodes, make_walk, to_host
 from jaxleas.distillation.faithful_metrics import Tally, batch_metrics
-from jaxleas.envs.steering import SteeringEnv, World
+from jaxleas.envs.steering import Steering, World
 from jaxleas.labels import Judge
 from jaxleas.terrain import Scene
 from jaxleas.training import (
@@ -44,7 +44,7 @@ class Faithful:
     Attributes:
         config: configuration of the run.
         faithful: configuration of the waves: how much is walked at once, and how far ahead.
-        env: steering task.
+        task: steering task.
         world: terrains to train on.
         scenes: exact scenes of the same terrains.
         judge: exact planner, with its workers.
@@ -54,7 +54,7 @@ class Faithful:
 
     config: SteeringRun
     faithful: FaithfulConfig
-    env: SteeringEnv
+    task: Steering
     world: World
     scenes: tuple[Scene, ...]
     judge: Judge
@@ -64,7 +64,7 @@ class Faithful:
     def __post_init__(self) -> None:
         self.networks = make_networks(self.config.network, self.config.env.signature())
         robots = self.faithful.robots
-        self._walk = jax.jit(make_walk(self.config, self.env, self.networks, robots))
+        self._walk = jax.jit(make_walk(self.config, self.task.env, self.networks, robots))
         self._update = jax.jit(make_update(self.config, self.networks))
         self._empty()
 
@@ -151,7 +151,7 @@ class Faithful:
     def _ask(self, walked: Any) -> Wave:
         """Wait for a wave to be walked, and let the workers judge it, in the bench's thread."""
         episodes = to_host(walked)
-        paths = episodes.walks.paths(self.env.config.limits.time_step)
+        paths = episodes.walks.paths(self.task.env.config.limits.time_step)
         return episodes, self.judge.judge(self.scenes, paths, episodes.walks.map_index)
 
 

@@ -11,7 +11,6 @@ from jaxleas.configuration import to_yaml
 from jaxleas.distillation.faithful import Faithful
 from jaxleas.distillation.folder import RoundFolder
 from jaxleas.distillation.practice import conclude
-from jaxleas.envs.steering import Steering
 from jaxleas.runs import Checkpoints, Interruption, MetricsLog, Progress, RunFolder
 from jaxleas.training import (
     POLICY_FILE,
@@ -93,7 +92,7 @@ class _Session:
 
     def __post_init__(self) -> None:
         config = self.training.config
-        task = Steering(config.env, config.terrain)
+        task = self.training.task
         self.held_out = held_out_world(config, task)
         self.examine = jax.jit(make_examination(config, task, self.training.networks))
 

@@ -11,7 +11,7 @@ from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_
 from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import write_json, write_text
 from jaxleas.runs import RunFolder
-from jaxleas.training import Devices, load_run_config, train
+from jaxleas.training import Devices, load_run_config, make_task, train
 from jaxleas.types import InputError
 
 
@@ -27,17 +27,19 @@ def open_folder(
         folder: folder of the distillation.
         config: its configuration.
         start: run folder of the policy to begin with, if one is given.
-        allow: planners of the user's own that may be imported, each MODULE:CLASS.
+        allow: user's own code that may be run, as MODULE:CLASS: planner and conditions.
 
     Raises:
         InputError: the folder belongs to something else, or to a distillation with another
             configuration or another policy to begin with; the planner's parameters cannot be used;
-            or `start` is not a run folder.
+            `start` is not a run folder; or without it, the run's task cannot be made.
     """
     planner = find_planner(config.planner, allow)
     settings_from(planner, **config.parameters)
     settings_from(planner, **config.labelling_parameters)
-    if start is not None:
+    if start is None:
+        make_task(config.run, allow)
+    else:
         RunFolder.open(start)
     where = None if start is None else str(Path(start).resolve())
     if folder.config.is_file():
@@ -69,13 +71,19 @@ def first_run(config: DistillationConfig, start: Path | None) -> SteeringRun:
     return config.run if start is None else load_steering_run(RunFolder.open(start).config)
 
 
-def train_start(folder: DistillationFolder, config: DistillationConfig, devices: Devices) -> Path:
+def train_start(
+    folder: DistillationFolder,
+    config: DistillationConfig,
+    devices: Devices,
+    allow: Collection[str] = (),
+) -> Path:
     """Return the run folder of the policy to begin with, trained first where none was given.
 
     Args:
         folder: folder of the distillation.
         config: configuration of the distillation.
         devices: devices that share a training.
+        allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
         InputError: this is not a distillation's folder.
@@ -88,7 +96,7 @@ def train_start(folder: DistillationFolder, config: DistillationConfig, devices:
     else:
         run = RunFolder.create(folder.start, to_yaml(config.run), ["jaxleas", "distill"])
     with run:
-        train(load_steering_run(run.config), run, devices=devices)
+        train(load_steering_run(run.config), run, devices=devices, allow=allow)
     return folder.start
 
 

@@ -2,11 +2,12 @@
 
 import logging
 import time
+from collections.abc import Collection
 from pathlib import Path
 
 import jax
 
-from jaxleas.conditions import Foresight, harmless
+from jaxleas.conditions import Foresight, harmless, permission
 from jaxleas.configuration import to_yaml
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
@@ -61,6 +62,7 @@ def practise(
     foresight: Foresight | None,
     learned: Learned,
     devices: Devices,
+    allow: Collection[str] = (),
 ) -> None:
     """Train in the round's run folder, and resume an interrupted practice.
 
@@ -73,6 +75,7 @@ def practise(
         foresight: foresight that ends episodes, in addition to reachability and collision, if any.
         learned: networks to begin with.
         devices: devices that share the practice.
+        allow: user's own code that may be run, as MODULE:CLASS: conditions.
     """
     begun = time.perf_counter()
     if (folder.run / "config.yaml").is_file():
@@ -80,7 +83,7 @@ def practise(
     else:
         run = RunFolder.create(folder.run, to_yaml(config), ["jaxleas", "distill"])
     with run:
-        task = Steering(config.env, config.terrain, foresight=foresight)
+        task = Steering(config.env, config.terrain, foresight=foresight, allow=allow)
         train_task(config, task, run, devices, learned)
     conclude(folder, config, time.perf_counter() - begun)
 
@@ -93,7 +96,7 @@ def conclude(folder: RoundFolder, config: SteeringRun, seconds: float) -> None:
         config: configuration of the run.
         seconds: duration of the practice [s].
     """
-    _, after = read_run(folder.run)
+    after = read_learned(folder.run)
     networks = make_networks(config.network, config.env.signature())
     policy = policy_of(networks, config.env, after.normaliser, after.averaged)
     write_policy(folder.policy, policy)
@@ -101,24 +104,41 @@ def conclude(folder: RoundFolder, config: SteeringRun, seconds: float) -> None:
     write_json(folder.practised, {"steps": steps, "seconds": round(seconds, 1)})
 
 
-def read_run(path: str | Path) -> tuple[SteeringRun, Learned]:
+def read_run(path: str | Path, allow: Collection[str] = ()) -> tuple[SteeringRun, Learned]:
     """Return the configuration of a run and what it has learned by its newest checkpoint.
 
-    Conditions that are code, or a surrogate's file, give way to R* and C, with a warning: a
-    distillation has a surrogate of its own.
+    Conditions that are code which may not be run, or a surrogate's file, give way to R* and C, with
+    a warning: a distillation has a surrogate of its own.
+
+    Args:
+        path: run folder.
+        allow: user's own code that may be run, as MODULE:CLASS: conditions.
+
+    Raises:
+        InputError: the path is not a run folder, or has no checkpoint that can be read.
+    """
+    config = load_steering_run(RunFolder.open(path).config)
+    if not harmless(config.env.conditions, allow):
+        _LOG.warning(
+            "%s: conditions other than the built-in ones give way to R* and C%s",
+            path,
+            permission(config.env.conditions, allow),
+        )
+        env = config.env.under_standard_conditions()
+        config = config.model_copy(update={"env": env})
+    return config, read_learned(path)
+
+
+def read_learned(path: str | Path) -> Learned:
+    """Return what a run has learned by its newest checkpoint.
 
     Raises:
         InputError: the path is not a run folder, or has no checkpoint that can be read.
     """
     run = RunFolder.open(path)
     config = load_steering_run(run.config)
-    if not harmless(config.env.conditions):
-        _LOG.warning("%s: conditions other than the built-in ones give way to R* and C", path)
-        env = config.env.under_standard_conditions()
-        config = config.model_copy(update={"env": env})
     like = jax.eval_shape(lambda: _fresh(config))
-    _, learned, _ = Checkpoints(run.checkpoints).latest(like, partial=True)
-    return config, learned
+    return Checkpoints(run.checkpoints).latest(like, partial=True)[1]
 
 
 def _fresh(config: SteeringRun) -> Learned:

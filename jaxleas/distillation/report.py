@@ -1,5 +1,6 @@
 """The report of a distilled run: one HTML file, from the files of its folder alone."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,13 @@ TEMPLATE = "distilled.html"
 _PARTS = ("stretch", "guide")  # the parts of a surrogate's report
 
 
-def write_distilled_report(run: Path, out: Path | None = None) -> Path:
+def write_distilled_report(run: Path, out: Path | None = None, allow: Collection[str] = ()) -> Path:
     """Write the report of a distilled run; the same files give the same bytes.
 
     Args:
         run: the distillation's folder.
         out: file to write; by default RUN/report.html.
+        allow: planner of the user's own that may be imported, MODULE:CLASS, for its title.
 
     Raises:
         InputError: no round is finished, or a file of the folder cannot be read.
@@ -32,17 +34,23 @@ def write_distilled_report(run: Path, out: Path | None = None) -> Path:
     config = load_config(DistillationConfig, DistillationFolder(run).config)
     data = read_run_data(run, config.planner)
     target = run / "report.html" if out is None else out
-    write_text(target, render(data, config))
+    write_text(target, render(data, config, title_of(config.planner, allow)))
     return target
 
 
-def render(data: RunData, config: DistillationConfig) -> str:
-    """Return the report's HTML: images inline, nothing fetched, no scripts."""
+def render(data: RunData, config: DistillationConfig, planner: str) -> str:
+    """Return the report's HTML: images inline, nothing fetched, no scripts.
+
+    Args:
+        data: content of the distillation's folder.
+        config: its configuration.
+        planner: title of its planner.
+    """
     figures = draw_figures(data.figures) if data.figures is not None else []
     best = data.best
     return page_template("jaxleas.distillation", TEMPLATE).render(
         name=data.path.resolve().name,
-        planner=title_of(config.planner),
+        planner=planner,
         mode=config.mode,
         headlines=headlines(data, config),
         starts=config.judge.starts,

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 
 from jaxleas.distillation.config import SteeringRun
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv, layout_named
 from jaxleas.training import Learned, Policy, initial_normaliser
 from jaxleas.types import InputError
 
@@ -33,13 +33,9 @@ def widen(
     """
     if observation is None or observation == config.env.observation:
         return config, learned
-    env = SteeringEnv(
-        SteeringConfig.model_validate(config.env.model_dump() | {"observation": observation})
-    )
-    before = SteeringEnv(config.env).layout
-    if (before.rows, before.columns) != (env.layout.rows, env.layout.columns) or (
-        env.layout.size < before.size
-    ):
+    env = SteeringConfig.model_validate(config.env.model_dump() | {"observation": observation})
+    before, after = layout_named(config.env.observation), layout_named(observation)
+    if (before.rows, before.columns) != (after.rows, after.columns) or after.size < before.size:
         raise InputError(
             f"a policy that sees {before.name} cannot be continued with practice.observation ="
             f" {observation}, which does not only add to it: train one with env.observation ="
@@ -50,14 +46,14 @@ def widen(
             f"practice.observation = {observation} needs a policy with network.normaliser = affine,"
             f" not {config.network.normaliser}"
         )
-    changed = config.model_copy(update={"env": env.config})
-    added = env.layout.size - before.size
+    changed = config.model_copy(update={"env": env})
+    added = after.size - before.size
     wider = Learned(
         params=learned.params.replace(
             policy=_wider(learned.params.policy, added), value=_wider(learned.params.value, added)
         ),
         averaged=_wider(learned.averaged, added),
-        normaliser=initial_normaliser(config.network, env.config.signature()),
+        normaliser=initial_normaliser(config.network, env.signature()),
     )
     return changed, wider
 

@@ -31,6 +31,7 @@ class Workplace:
         learned: networks learned by the initial policy.
         env: steering task of the policy.
         devices: devices that share the practice.
+        allow: user's own code that may be run, as MODULE:CLASS.
         workers: workers that ask the planner.
         judge: planner that judges, with its workers.
     """
@@ -52,20 +53,21 @@ class Workplace:
             start: run folder of the policy to begin with.
             processes: number of processes that ask the planner.
             devices: devices that share the practice; by default the first.
-            allow: planners of the user's own that may be imported, each MODULE:CLASS.
+            allow: user's own code that may be run, as MODULE:CLASS: planner and conditions.
 
         Raises:
             InputError: the planner's parameters cannot be used, or there is no such run.
         """
         self.config, self.folder, self._start = config, folder, start
+        self.allow = tuple(allow)
         planner = find_planner(config.planner, allow)
         settings: PlannerSettings = settings_from(planner, **config.parameters)
         labelling: PlannerSettings = settings_from(planner, **config.labelling_parameters)
         self.devices = devices or one_device()
-        own, self.learned = widen(*read_run(start), config.practice.observation)
+        own, self.learned = widen(*read_run(start, allow), config.practice.observation)
         terrain = config.practice.terrain or own.terrain
         self.run_config = own.model_copy(update={"terrain": terrain})
-        self.env = SteeringEnv(self.run_config.env)
+        self.env = SteeringEnv(self.run_config.env, allow=allow)
         self.workers = ProcessWorkers(processes, PLANNER_MODULES)
         robot = self.run_config.env.robot
         self.settings, self.labelling = settings.for_robot(robot), labelling.for_robot(robot)
@@ -85,7 +87,7 @@ class Workplace:
         terrain = self.run_config.terrain
         seeds = range(terrain.first_seed, terrain.first_seed + terrain.arenas)
         scenes = tuple(generate_arena(terrain.generator, seed).scene for seed in seeds)
-        task = Steering(self.run_config.env, terrain.without_files())
+        task = Steering(self.run_config.env, terrain.without_files(), allow=self.allow)
         return Ground(self.env, training_world(self.run_config, task), scenes)
 
     @property

@@ -17,7 +17,7 @@ from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.labels import Judge, planner_workers
 
 Results = dict[ResultKey, CellResult]
-_SAME = ("suite", "seed", "robot", "scale", "foresight")
+_SAME = ("suite", "seed", "robot", "scale", "conditions", "foresight")
 """What must agree before results of one evaluation count in another."""
 
 
@@ -142,7 +142,7 @@ def _head(
         fingerprint=candidate.fingerprint,
         policies=dict(contenders.fingerprints),
         planners={name: judge.settings.model_dump(mode="json") for name, judge in judges.items()},
-        foresight=None if candidate.refusal is None else candidate.refusal.describe(),
+        **candidate.terms.describe(),
         robot=candidate.env.config.robot,
         scale=suite.scale,
         seed=suite.seed,

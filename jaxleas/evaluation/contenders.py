@@ -10,16 +10,16 @@ from pathlib import Path
 from jaxleas.configuration import is_own
 from jaxleas.evaluation.exact import Walker, walker
 from jaxleas.evaluation.examination import Candidate
-from jaxleas.evaluation.refusal import Refusal, env_of
 from jaxleas.evaluation.roadmap_walker import roadmap_walker
+from jaxleas.evaluation.terms import Terms
 from jaxleas.guide import (
     METHODS,
     compared,
     find_method,
     import_ompl,
     leas,
-    load_policy,
     policy_file,
+    read_steering_policy,
 )
 from jaxleas.types import InputError
 
@@ -66,7 +66,7 @@ def make_contenders(
     fingerprints: dict[str, str] = {}
     for name in sorted(dict.fromkeys(chosen), key=lambda each: (*names, each).index(each)):
         if name in policies:
-            walkers[name] = _policy_walker(policies[name], candidate.refusal)
+            walkers[name] = _policy_walker(policies[name], candidate.terms)
             fingerprints[name] = fingerprint_of(policies[name])
         elif is_own(name):
             walkers[name] = _own_walker(candidate, name)
@@ -128,7 +128,7 @@ def fingerprint_of(path: Path) -> str:
 
 def _own_walker(candidate: Candidate, name: str) -> Walker:
     method = find_method(name)
-    policy = load_policy(candidate.path) if method.needs_policy else None
+    policy = read_steering_policy(candidate.path) if method.needs_policy else None
     return walker(candidate.env, method.make(candidate.env, policy))
 
 
@@ -138,7 +138,7 @@ def _fingerprint_of_code(name: str) -> dict[str, str]:
     return {} if file is None else {name: hashlib.sha256(Path(file).read_bytes()).hexdigest()}
 
 
-def _policy_walker(path: Path, refusal: Refusal | None) -> Walker:
-    policy = load_policy(path)
-    env = env_of(policy.config, refusal)
+def _policy_walker(path: Path, terms: Terms) -> Walker:
+    policy = read_steering_policy(path)
+    env = terms.env(policy.config)
     return walker(env, leas(env, policy))

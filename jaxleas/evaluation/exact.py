@@ -17,7 +17,7 @@ from jaxleas.evaluation.starts import Grounds, Starts, draw_starts, make_grounds
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import Cell, Suite
-from jaxleas.guide import SteeringMethod, leas, load_policy
+from jaxleas.guide import SteeringMethod, leas, read_steering_policy
 from jaxleas.labels import Judge
 from jaxleas.terrain import Scene
 from jaxleas.types import GuidePath, Verdict
@@ -202,7 +202,7 @@ def exact_success(
         settings: settings of the planner.
         suites: suites to be walked, in published sizes; they are scaled to the policy's robot.
     """
-    found = load_policy(policy)
+    found = read_steering_policy(policy)
     env = SteeringEnv(found.config.under_standard_conditions())
     walkers = {"policy": walker(env, leas(env, found))}
     with Judge(planner, settings, robot=found.config.robot) as judge:

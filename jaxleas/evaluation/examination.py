@@ -2,19 +2,20 @@
 
 import hashlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.judge import judge
-from jaxleas.evaluation.refusal import Refusal, env_of
+from jaxleas.evaluation.refusal import Refusal
 from jaxleas.evaluation.report_basis import ReportBasis
 from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
 from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import REPORTED, REPORTED_IF_EVALUATED, Suite, make_suite
-from jaxleas.guide import BASELINES, LEAS, SteeringMethod, load_policy, policy_file
+from jaxleas.evaluation.terms import Terms
+from jaxleas.guide import BASELINES, LEAS, SteeringMethod, policy_file, read_steering_policy
 from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
@@ -30,32 +31,40 @@ class Candidate:
         fingerprint: SHA-256 of its file.
         env: the task it was trained for.
         methods: the policy as a steering method first, then the baselines.
-        refusal: refusal of guide paths that are foreseen to fail; None: none is refused.
+        terms: terms on which it is judged, and all that it is compared with.
+        note: sentence on conditions of one's own that it was trained under; "": there are none.
     """
 
     path: Path
     fingerprint: str
     env: SteeringEnv
     methods: Mapping[str, SteeringMethod]
-    refusal: Refusal | None = None
+    terms: Terms
+    note: str = ""
 
 
-def load_candidate(path: str | Path, refusal: Refusal | None = None) -> Candidate:
+def load_candidate(
+    path: str | Path, refusal: Refusal | None = None, allow: Collection[str] = ()
+) -> Candidate:
     """Load a run folder, a policy.npz or an .onnx file, with the baselines to compare with.
 
     Args:
         path: path of the policy.
         refusal: refusal of guide paths that are foreseen to fail.
+        allow: each MODULE:CLASS among the policy's conditions that is to judge it, too; by default
+            R* and C judge every policy.
 
     Raises:
         InputError: there is no policy, it cannot be used, or the surrogate is not for it.
     """
-    policy = load_policy(path)
-    env = env_of(policy.config, refusal)
+    policy = read_steering_policy(path)
+    terms = Terms.of(policy.config.conditions, refusal, allow)
+    env = terms.env(policy.config)
     methods = {each.key: each.make(env, policy) for each in (LEAS, *BASELINES.values())}
     file = policy_file(path) if Path(path).is_dir() else Path(path)
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
-    return Candidate(Path(path), fingerprint, env, methods, refusal)
+    note = terms.note_for(policy.config.conditions, allow)
+    return Candidate(Path(path), fingerprint, env, methods, terms, note)
 
 
 def examine(
@@ -84,7 +93,7 @@ def examine(
         suite=suite.name,
         policy=str(candidate.path),
         fingerprint=candidate.fingerprint,
-        foresight=None if candidate.refusal is None else candidate.refusal.describe(),
+        **candidate.terms.describe(),
         robot=candidate.env.config.robot,
         scale=suite.scale,
         seed=suite.seed,

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from jaxleas.conditions import STANDARD
 from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
 from jaxleas.files import read_typed, write_json
 
@@ -69,6 +70,8 @@ class Figures(Strict):
     """Settings of the planner; `keep_every` is N_ref."""
     policies: dict[str, str]
     """SHA-256 of each policy's file, by the method's name."""
+    conditions: tuple[str, ...] = STANDARD
+    """Conditions that ended walks."""
     seed: int
     held_out: bool
     scale: Positive = 1.0

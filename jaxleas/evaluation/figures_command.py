@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from jaxleas.configuration import Allow
 from jaxleas.contacts import DEFAULT_PLANNER, PlannerName, find_planner, settings_from
 from jaxleas.evaluation.contenders import fingerprint_of, make_contenders, parse_policies
 from jaxleas.evaluation.examination import POLICY, load_candidate
@@ -35,6 +36,7 @@ def figures(
     seed: int = 0,
     held_out: bool = False,
     processes: int | None = None,
+    allow: Allow = (),
 ) -> Figures:
     """Measure what the thesis's figures 4.17 and 5.6 to 5.9 show; `jaxleas report` draws them.
 
@@ -55,6 +57,7 @@ def figures(
         seed: seed of scenes and starts.
         held_out: use terrain for choosing and tuning, not that of evaluation.
         processes: number of processes that plan contacts at the same time; all cores by default.
+        allow: conditions of your own that the policy was trained under, to end walks as well.
 
     Raises:
         InputError: there is no such policy or method, a number is out of range, or the file belongs
@@ -69,7 +72,9 @@ def figures(
     if "keep_every" in given:
         raise InputError("--parameters keep_every: give the numbers to measure as --keep-every")
     stated = settings_from(find_planner(planner, [planner]), **given)
-    candidate = load_candidate(run)
+    candidate = load_candidate(run, allow=allow)
+    if candidate.note:
+        print(candidate.note)
     suite = suited(suite, candidate.env.robot)
     robot = candidate.env.config.robot
     settings = stated.for_robot(robot)
@@ -85,6 +90,7 @@ def figures(
         planner=planner,
         settings=settings.model_dump(mode="json"),
         policies=fingerprints,
+        conditions=candidate.terms.conditions,
         seed=seed,
         held_out=held_out,
         scale=suite.scale,
@@ -114,7 +120,7 @@ def _opened(out: Path, head: Figures) -> Figures:
     if not Path(out).is_file():
         return head
     before = read_figures(out)
-    for name in ("planner", "settings", "seed", "held_out", "scale"):
+    for name in ("planner", "settings", "conditions", "seed", "held_out", "scale"):
         if getattr(before, name) != getattr(head, name):
             raise InputError(
                 f"{out} has {name} {getattr(before, name)}, not {getattr(head, name)}: give another"

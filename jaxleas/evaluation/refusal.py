@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.envs.steering import SteeringConfig
 from jaxleas.surrogates import Surrogate, SurrogateForesight, read_surrogate, require_fit
 from jaxleas.types import InputError
 
@@ -27,17 +27,14 @@ class Refusal:
     fingerprint: str
     where: str
 
-    def env(self, config: SteeringConfig) -> SteeringEnv:
-        """Return an environment in which walks are refused.
+    def foresight(self, config: SteeringConfig) -> SurrogateForesight:
+        """Return the foresight that ends walks in an environment of this configuration.
 
         Raises:
             InputError: the surrogate is for another robot or observation.
         """
         require_fit(self.surrogate, config, where=self.where)
-        return SteeringEnv(
-            config.under_standard_conditions(),
-            foresight=SurrogateForesight(self.surrogate, self.threshold),
-        )
+        return SurrogateForesight(self.surrogate, self.threshold)
 
     def describe(self) -> dict[str, Any]:
         """Return what an evaluation file records of the refusal."""
@@ -79,10 +76,3 @@ def load_refusal(
         )
     fingerprint = hashlib.sha256(Path(surrogate).read_bytes()).hexdigest()
     return Refusal(found, threshold, fingerprint, str(surrogate))
-
-
-def env_of(config: SteeringConfig, refusal: Refusal | None) -> SteeringEnv:
-    """Return the environment to judge in, with R* and C, with or without a refusal."""
-    if refusal is None:
-        return SteeringEnv(config.under_standard_conditions())
-    return refusal.env(config)

@@ -6,6 +6,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from jaxleas.conditions import STANDARD
 from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
 from jaxleas.files import read_typed, write_json
 
@@ -105,6 +106,8 @@ class Evaluation(Strict):
     """SHA-256 of the file of each further policy or method of one's own, by the method's name."""
     planners: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Settings of the exact planners, by name."""
+    conditions: tuple[str, ...] = STANDARD
+    """Conditions that ended walks."""
     foresight: dict[str, Any] | None = None
     """Refusal of guide paths foreseen to fail: `surrogate` (SHA-256 of its file), `planner`,
     `threshold`."""

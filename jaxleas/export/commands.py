@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from jaxleas.configuration import Allow
 from jaxleas.types import InputError
 
 RECORDING_KEY = 20_221_128  # seed of the recorded walks: always the same for the same policy
@@ -17,7 +18,7 @@ def export(
     terrain: Path | None = None,
     start: tuple[float, float, float] | None = None,
     runtime: Path | None = None,
-    allow: tuple[str, ...] = (),
+    allow: Allow = (),
 ) -> None:
     """Export the best policy of a run as ONNX and StableHLO, compared with JAX first.
 
@@ -28,7 +29,7 @@ def export(
         terrain: terrain of the page: height map, scene or mesh; docs/files.md lists all kinds.
         start: x, y [m] and heading [deg] on the page; by default a place with room around it.
         runtime: folder dist of the npm package onnxruntime-web; by default npm fetches it once.
-        allow: your own code that the run's configuration names, as MODULE:CLASS.
+        allow: your own code that the run's configuration names.
     """
     if page is None or terrain is None:
         if page is not None or terrain is not None or start is not None or runtime is not None:

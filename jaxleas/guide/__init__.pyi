@@ -11,6 +11,7 @@ from .leas import Leas as Leas
 from .leas import leas as leas
 from .loading import load_policy as load_policy
 from .loading import policy_file as policy_file
+from .loading import read_steering_policy as read_steering_policy
 from .onnx_policy import OnnxPolicy as OnnxPolicy
 from .onnx_policy import onnx_policy_from_bytes as onnx_policy_from_bytes
 from .onnx_policy import read_onnx_policy as read_onnx_policy

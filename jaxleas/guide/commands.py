@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jaxleas.configuration import Allow
 from jaxleas.guide.registry import SteeringName, find_method
 from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
@@ -32,7 +33,7 @@ def rollout(
     steering: SteeringName = "leas",
     picture: Path | None = None,
     reading: Reading = READING,
-    allow: Sequence[str] | None = None,
+    allow: Allow = (),
 ) -> None:
     """Walk a policy on any terrain and write its guide paths.
 
@@ -46,8 +47,8 @@ def rollout(
             terrain.
         picture: draw the paths from above (.png, .svg, .pdf).
         reading: what the terrain file does not state itself.
-        allow: MODULE:CLASS of your own under which the policy was trained, to walk it under that
-            condition; by default R* and C.
+        allow: conditions of your own that the policy was trained under, to walk it under them; by
+            default R* and C.
     """
     from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
@@ -60,10 +61,10 @@ def rollout(
     _require_sizes(steps, len(asked), out)
     if picture is not None:
         require_picture(picture)
-    walker = load_policy(policy, allow or ())
+    walker = load_policy(policy, allow)
     ground = import_terrain(terrain, reading)
     require_on_terrain(queries, asked, ground)
-    env = SteeringEnv(walker.config, allow=allow or ())
+    env = SteeringEnv(walker.config, allow=allow)
     config = env.config
     method = find_method(steering).make(env, walker)
     walked = walk_queries(env, method, ground, asked, steps)

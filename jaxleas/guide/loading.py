@@ -5,7 +5,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
-from jaxleas.conditions import STANDARD, harmless
+from jaxleas.conditions import STANDARD, harmless, permission, words_of
 from jaxleas.envs.steering import SteeringConfig
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
 from jaxleas.runs import policy_file
@@ -29,18 +29,30 @@ def load_policy(path: str | Path, allow: Collection[str] = ()) -> Policy | OnnxP
     Raises:
         InputError: there is no policy at the path, or it cannot be used.
     """
-    policy = _read(Path(path))
+    policy = read_steering_policy(path)
     conditions = policy.config.conditions
     if harmless(conditions, allow):
         return policy
-    names = [each if isinstance(each, str) else each.surrogate for each in conditions]
     _LOG.warning(
-        "%s was trained under the conditions %s; it walks under %s", path, names, list(STANDARD)
+        "%s was trained under %s; it walks under %s%s",
+        path,
+        words_of(conditions),
+        words_of(STANDARD),
+        permission(conditions, allow),
     )
     return replace(policy, config=policy.config.under_standard_conditions())
 
 
-def _read(path: Path) -> Policy | OnnxPolicy:
+def read_steering_policy(path: str | Path) -> Policy | OnnxPolicy:
+    """Return the policy at `path`; its `config` names the conditions that it was trained under.
+
+    Args:
+        path: as for `load_policy`.
+
+    Raises:
+        InputError: there is no policy at the path, or it cannot be used.
+    """
+    path = Path(path)
     if path.is_dir():
         return read_policy(policy_file(path), of=SteeringConfig)
     if path.suffix == ".npz":

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from jaxleas.configuration import Allow
 from jaxleas.guide.registry import Method, SteeringName, find_method
 from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain import READING, Reading
@@ -34,6 +35,7 @@ def navigate(
     out: Path,
     picture: Path | None = None,
     reading: Reading = READING,
+    allow: Allow = (),
 ) -> None:
     """Find a guide path between two places on any terrain, through waypoints where needed.
 
@@ -56,6 +58,8 @@ def navigate(
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
         reading: details that the file does not state itself.
+        allow: conditions of your own that the policy was trained under, to walk it under them; by
+            default R* and C.
 
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
@@ -83,7 +87,7 @@ def navigate(
         import_ompl()
     keep_compiled_programs()
     named = find_method(steering)
-    env, method = _steering(named, policy, robot)
+    env, method = _steering(named, policy, robot, allow)
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
@@ -119,7 +123,7 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
 
 
 def _steering(
-    method: Method, policy: Path | None, robot: str | None
+    method: Method, policy: Path | None, robot: str | None, allow: Allow
 ) -> "tuple[SteeringEnv, SteeringMethod]":
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
@@ -131,13 +135,13 @@ def _steering(
             )
         env = SteeringEnv(SteeringConfig.for_robot(robot or DEFAULT_ROBOT))
         return env, method.make(env, None)
-    loaded = load_policy(policy)
+    loaded = load_policy(policy, allow)
     if robot not in (None, loaded.config.robot):
         raise InputError(
             f"--robot {robot}: the policy {policy} is for {loaded.config.robot}; leave --robot out,"
             " or give another policy"
         )
-    env = SteeringEnv(loaded.config)
+    env = SteeringEnv(loaded.config, allow=allow)
     return env, method.make(env, loaded)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from jaxleas.configuration import Allow
 from jaxleas.contacts import PLANNERS, PlannerName, PlannerSettings, find_planner, settings_from
 from jaxleas.evaluation import (
     Evaluation,
@@ -53,6 +54,7 @@ def evaluate(
     pictures: Path | None = None,
     surrogate: Path | None = None,
     threshold: float | None = None,
+    allow: Allow = (),
 ) -> Evaluation:
     """Judge a policy on terrains it was never trained on, and print the table.
 
@@ -85,6 +87,8 @@ def evaluate(
         surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
             they end early, as stopped. The result is kept in --json only.
         threshold: least probability of success, by the surrogate, to continue with: the risk dial.
+        allow: conditions of your own that the policy was trained under, to end walks as well; by
+            default R* and C do. The result is kept in --json only.
 
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.
@@ -107,9 +111,11 @@ def evaluate(
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
     refusal = load_refusal(surrogate, threshold, names)
-    candidate = load_candidate(run, refusal)
+    candidate = load_candidate(run, refusal, allow)
+    if candidate.note:
+        print(candidate.note)
     chosen = suited(chosen, candidate.env.robot)
-    folder = Path(run) if Path(run).is_dir() and refusal is None else None
+    folder = Path(run) if Path(run).is_dir() and candidate.terms.are_standard else None
     if not side_by_side:
         with Reporter() as reporter:
             evaluation = examine(candidate, chosen, baseline=baseline, progress=reporter.say)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from jaxleas.configuration import Allow
 from jaxleas.surrogates.settings import FitSettings
 from jaxleas.types import InputError
 
@@ -21,6 +22,7 @@ def fit(
     code: int = USUAL.code,
     hidden: int = USUAL.hidden,
     seed: int = USUAL.seed,
+    allow: Allow = (),
 ) -> None:
     """Fit a surrogate, a contact planner's learned stand-in, to its verdicts.
 
@@ -35,6 +37,7 @@ def fit(
         code: outputs of the network's encoder.
         hidden: number of values that the network carries along.
         seed: random seed of the fit.
+        allow: conditions of your own that the policy was trained under.
     """
     from pydantic import ValidationError
 
@@ -52,14 +55,14 @@ def fit(
     except ValidationError as error:
         first = error.errors()[0]
         raise InputError(f"--{first['loc'][0]} {first['input']}: {first['msg'].lower()}") from error
-    config = None if policy is None else load_policy(policy).config
+    config = None if policy is None else load_policy(policy, allow).config
     found = read_labels(list(labels), list(where), DEFAULT_RESOLUTION)
     if config is None:
         try:
             config = SteeringConfig.for_robot(found.robot)
         except InputError as error:
             raise InputError(f"{labels[0]} holds verdicts on {found.robot}: {error}") from error
-    env = SteeringEnv(config)
+    env = SteeringEnv(config, allow=allow)
     if planner is not None and found.planner != planner:
         raise InputError(
             f"{labels[0]} holds verdicts of the {found.planner} planner, not of {planner}"

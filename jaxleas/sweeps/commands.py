@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Literal
 
+from jaxleas.configuration import Allow
+
 
 def sweep(
     sweep: Path,
@@ -11,7 +13,7 @@ def sweep(
     storage: str | None = None,
     workers: Literal["processes", "ray"] = "processes",
     parallel: int | None = None,
-    allow: tuple[str, ...] = (),
+    allow: Allow = (),
 ) -> None:
     """Search a space of configurations; the same command continues an interrupted search.
 
@@ -21,7 +23,7 @@ def sweep(
         storage: grpc://HOST:PORT, a database URL or FILE.log; by default a journal in the folder.
         workers: processes on this machine, or ray: the cluster that RAY_ADDRESS names.
         parallel: number of trainings at the same time; by default as in the file.
-        allow: your own code that the configuration names, as MODULE:CLASS.
+        allow: your own code that the configuration names.
     """
     from jaxleas.sweeps.border import open_sweep
     from jaxleas.sweeps.progress import SweepProgress
@@ -45,13 +47,13 @@ def sweep(
     print(f"written: {Path(out) / REPORT}, results.csv and results.json beside it")
 
 
-def population(population: Path, *, out: Path, allow: tuple[str, ...] = ()) -> None:
+def population(population: Path, *, out: Path, allow: Allow = ()) -> None:
     """Train several policies in one compiled program; the same command continues it.
 
     Args:
         population: YAML file of the members.
         out: folder to work in; each member's run folder is OUT/member_NN.
-        allow: your own code that the configuration names, as MODULE:CLASS.
+        allow: your own code that the configuration names.
     """
     import sys
 

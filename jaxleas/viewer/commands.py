@@ -5,17 +5,23 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jaxleas.configuration import Allow
 from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
 
 if TYPE_CHECKING:
     from viser import ViserServer
 
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide import OnnxPolicy
     from jaxleas.robots import Robot
     from jaxleas.terrain import HeightMap
+    from jaxleas.training import Policy
     from jaxleas.viewer.clips import Clip
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.show import Player
+
+    NamedRobot = tuple[str, SteeringEnv, Policy | OnnxPolicy]
 
 FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
@@ -35,6 +41,7 @@ def view(
     port: int = 8080,
     browser: bool = True,
     reading: Reading = READING,
+    allow: Allow = (),
 ) -> None:
     """Show a terrain in the browser; drive policies on it, play back paths and plans.
 
@@ -53,6 +60,8 @@ def view(
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
         reading: details that the file does not state itself.
+        allow: conditions of your own that the policies were trained under, to walk them under
+            these; by default R* and C.
     """
     from jaxleas.terrain import import_terrain, read_scene
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky
@@ -88,7 +97,8 @@ def view(
             players.append(_play_back(server, drawn, clips, playing=record is not None))
         if policies:
             waiting = server.gui.add_markdown("The policies are being loaded ...")
-            players.append(_drive(server, ground, policies, start, goal))
+            robots = _load_robots(policies, allow)
+            players.append(_drive(server, ground, robots, start, goal))
             waiting.remove()
         if record is None:
             show(players, recorder)
@@ -181,34 +191,37 @@ def _play_back(
     return playback
 
 
+def _load_robots(policies: Sequence[Path], allow: Allow) -> "list[NamedRobot]":
+    """Return name, environment and policy of each robot."""
+    from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide import load_policy
+    from jaxleas.xla import keep_compiled_programs
+
+    keep_compiled_programs()
+    loaded = [load_policy(each, allow) for each in policies]
+    envs = [SteeringEnv(each.config, allow=allow) for each in loaded]
+    return list(zip(_names(policies), envs, loaded, strict=True))
+
+
 def _drive(
     server: "ViserServer",
     terrain: "HeightMap",
-    policies: Sequence[Path],
+    robots: "list[NamedRobot]",
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
 ) -> "Drive":
-    from jaxleas.envs.steering import SteeringEnv
-    from jaxleas.guide import choose_start, load_policy, require_start
+    from jaxleas.guide import choose_start, require_start
     from jaxleas.terrain import make_atlas
     from jaxleas.viewer.drive import Drive
     from jaxleas.viewer.driven_robot import DrivenRobot
     from jaxleas.viewer.ground import look_near
-    from jaxleas.xla import keep_compiled_programs
 
-    keep_compiled_programs()
-    loaded = [load_policy(each) for each in policies]
-    envs = [SteeringEnv(each.config) for each in loaded]
-    place = (
-        choose_start(envs[0], terrain) if start is None else require_start(envs[0], terrain, start)
-    )
+    first = robots[0][1]
+    place = choose_start(first, terrain) if start is None else require_start(first, terrain, start)
     x, y, _ = place.position
     look_near(server, terrain, (float(x), float(y)))
     atlas = make_atlas([terrain])
-    driven = [
-        DrivenRobot(name, env, policy, atlas)
-        for name, env, policy in zip(_names(policies), envs, loaded, strict=True)
-    ]
+    driven = [DrivenRobot(name, env, policy, atlas) for name, env, policy in robots]
     drive = Drive(server, terrain, driven, place)
     if goal is not None:
         drive.send(goal)

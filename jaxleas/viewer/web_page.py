@@ -63,7 +63,8 @@ def write_page(
             f"a terrain of {terrain.heights.size} cells is too large for a page, which takes"
             f" {MOST_CELLS}; import it at a coarser --resolution"
         )
-    env = SteeringEnv(config)
+    # The page judges by no condition; R* and C choose where to start, and need no other file.
+    env = SteeringEnv(config.under_standard_conditions())
     pose = choose_start(env, terrain) if start is None else require_start(env, terrain, start)
     library = runtime_folder(runtime)
     folder = Path(folder)

@@ -74,7 +74,8 @@ def ground():
 
 
 def make(ground, faithful):
-    return Faithful(CONFIG, faithful, ground.env, ground.world, ground.scenes, Strict())
+    task = Steering(CONFIG.env, CONFIG.terrain)
+    return Faithful(CONFIG, faithful, task, ground.world, ground.scenes, Strict())
 
 
 @pytest.fixture(scope="module")
@@ -220,9 +221,8 @@ def test_a_policy_learns_to_avoid_what_its_planner_cannot_do(ground):
     env = config.env.model_copy(update={"reward": reward})
     config = config.model_copy(update={"ppo": ppo, "env": env})
     robots = FaithfulConfig(robots=32)
-    training = Faithful(
-        config, robots, SteeringEnv(config.env), ground.world, ground.scenes, Dizzy()
-    )
+    task = Steering(config.env, config.terrain)
+    training = Faithful(config, robots, task, ground.world, ground.scenes, Dizzy())
     told = islice(training.updates(training.fresh_state(None)), config.ppo.updates)
     failures = [metrics["planner/failures_per_1000_steps"] for _, metrics in told]
     assert failures[0] > 450

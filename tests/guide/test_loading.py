@@ -13,6 +13,7 @@ from jaxleas.guide import load_policy, read_guide_paths
 from jaxleas.guide.commands import rollout
 from jaxleas.terrain import write_height_map
 from jaxleas.training.policy import read_policy, write_policy
+from jaxleas.types import InputError
 
 from .walkers import flat_map, homing_policy
 
@@ -52,10 +53,29 @@ def test_code_that_a_policy_names_runs_with_permission_only(folder, name, caplog
     write(folder, *STANDARD, MINE)
     with caplog.at_level("WARNING"):
         assert load_policy(name).config.conditions == STANDARD
-    assert f"trained under the conditions {[*STANDARD, MINE]}; it walks under" in caplog.text
+    assert f"trained under {', '.join([*STANDARD, MINE])}; it walks under" in caplog.text
+    assert f"give --allow {MINE}" in caplog.text
     assert load_policy(name, [MINE]).config.conditions == (*STANDARD, MINE)
     assert "strangers_conditions" not in sys.modules
     assert read_policy("policy.npz").config.conditions == (*STANDARD, MINE)
+
+
+def test_a_policy_is_judged_by_its_own_conditions_where_they_are_allowed(folder):
+    write(folder, *STANDARD, MINE)
+    plain, own = load_candidate("policy.npz"), load_candidate("policy.npz", allow=[MINE])
+    assert plain.terms.conditions == plain.env.config.conditions == STANDARD
+    assert f"judged under {', '.join(STANDARD)}; if you trust" in plain.note
+    assert f"--allow {MINE}" in plain.note
+    assert own.terms.conditions == own.env.config.conditions == (*STANDARD, MINE)
+    assert plain.terms.are_standard
+    assert not own.terms.are_standard
+    assert own.terms.describe() == {"conditions": (*STANDARD, MINE), "foresight": None}
+
+
+def test_a_part_of_the_conditions_does_not_judge(folder):
+    write(folder, *STANDARD, MINE, SurrogateSettings(surrogate="/nowhere/surrogate.npz"))
+    with pytest.raises(InputError, match="all of them or none, and a surrogate's file"):
+        load_candidate("policy.npz", allow=[MINE])
 
 
 def test_a_surrogate_that_a_policy_names_is_left_alone(folder):

@@ -210,13 +210,19 @@ def test_wrong_settings_are_refused(here, given: list[str], message: str) -> Non
 def test_a_file_alone_runs_no_code(here) -> None:
     (here / "evil.py").write_text("raise SystemExit('it ran')")
     (here / "d.yaml").write_text("planner: evil:Walker")
-    with pytest.raises(InputError, match="which is code: if you trust it, give --planner"):
+    with pytest.raises(
+        InputError, match="which is code: if you trust it, give --allow evil:Walker"
+    ):
         cli.run(["distill", "d.yaml", "--out", "out"])
     assert "evil" not in sys.modules
     with pytest.raises(InputError, match="asks for the planner evil:Walker, not for mip"):
         cli.run(["distill", "d.yaml", "--planner", "mip", "--out", "out"])
     assert not (here / "out").exists()
     assert permit(here / "d.yaml", "sampling", None) == ()
+    assert permit(here / "d.yaml", "evil:Walker", None, ["evil:Walker"]) == ("evil:Walker",)
+    assert permit(here / "d.yaml", "evil:Walker", "evil:Walker") == ("evil:Walker",)
+    with pytest.raises(InputError, match="you allowed evil:Wakler: is one of the two misspelt"):
+        permit(here / "d.yaml", "evil:Walker", None, ["evil:Wakler"])
     with pytest.raises(ValueError, match="planner"):
         DistillationConfig(planner="os.system")
 
