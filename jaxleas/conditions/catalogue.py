@@ -1,6 +1,7 @@
 """The conditions by name, and how a configuration's names become conditions."""
 
 from collections.abc import Callable, Collection, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from jaxtyping import Float
 
 from jaxleas.conditions.condition import Condition, all_of, stated_points
 from jaxleas.conditions.foresight import Foresight
-from jaxleas.configuration import Registry
+from jaxleas.configuration import Registry, is_own, own_code
 from jaxleas.robots import Robot
 from jaxleas.types import InputError, RootMotion
 
@@ -97,11 +98,13 @@ def _make(
     try:
         if not isinstance(each, str):
             return CONDITIONS.find(SURROGATE)(each, env)
-        made = CONDITIONS.find(each, allow)(robot, candidates)
+        kind = CONDITIONS.find(each, allow)
     except InputError as error:
         raise InputError(f"{KEY}: {error}") from error
-    if not _foresees(made):
-        _require_condition(each, made)
+    with own_code(f"{KEY}: {each}") if is_own(each) else nullcontext():
+        made = kind(robot, candidates)
+        if not _foresees(made):
+            _require_condition(each, made)
     return made
 
 

@@ -65,7 +65,7 @@ def distill(
     print(f"{folder.policy}: the best round's policy{beside}")
 
 
-def report(run: Path, out: Path | None = None, *, allow: Allow = ()) -> Path:
+def report(run: Path, out: Path | None = None, allow: Allow = ()) -> Path:
     """Write a run's report as one self-contained HTML file.
 
     For a training: suites that the run was not yet judged on are judged first. For a distillation:

@@ -8,6 +8,7 @@ from jaxleas.files import write_text
 from jaxleas.sweeps.border import Sweep, open_sweep
 from jaxleas.sweeps.conductor import Conductor
 from jaxleas.sweeps.folder import open_folder
+from jaxleas.sweeps.rehearsal import rehearse_apart
 from jaxleas.sweeps.report import report_html
 from jaxleas.sweeps.results import TrialResult
 from jaxleas.sweeps.runners import engage
@@ -43,12 +44,15 @@ def run_sweep(
         The results of all trials, by number.
 
     Raises:
-        InputError: sweep, folder, storage or workers cannot be used.
+        InputError: sweep, task, folder, storage or workers cannot be used.
+        OwnCodeError: a method of the user's own task does not keep the protocol.
         InterruptedSweepError: a signal asked to stop; the same call continues.
     """
     require_optuna()
     sweep = sweep if isinstance(sweep, Sweep) else open_sweep(sweep)
     is_new = not Path(out).exists()
+    if is_new:
+        rehearse_apart(sweep.base, sweep.source, sweep.allow)
     folder = open_folder(Path(out), sweep)
     try:
         try:

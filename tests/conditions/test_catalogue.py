@@ -55,6 +55,11 @@ class One:
         return heights_in_root.max()
 
 
+class Raising:
+    def __init__(self, robot, candidates):
+        raise ValueError(f"no {robot.name}")
+
+
 class Memory:
     def __init__(self, robot, candidates):
         pass
@@ -188,6 +193,7 @@ def test_names_that_mean_nothing_are_refused_when_they_are_read(folder, conditio
             "one condition with memory",
         ),
         (["my_conditions:OWN"], "cannot be loaded"),
+        (["my_conditions:Raising"], r"raises ValueError: no talos \(my_conditions.py, line "),
     ],
 )
 def test_what_cannot_be_had_is_refused_when_it_is_made(folder, conditions, said):

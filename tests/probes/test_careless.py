@@ -8,7 +8,9 @@ import pytest
 from jaxleas.configuration.own_code import methods_of
 from jaxleas.envs.environment import Examination, Task
 from jaxleas.envs.registry import TASKS
+from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.job import do_job, read_outcome, write_job
+from jaxleas.sweeps.sweep import run_sweep
 from jaxleas.training.loop import _Session
 from jaxleas.training.rehearsal import rehearse
 from jaxleas.training.run_config import load_run_config
@@ -267,6 +269,25 @@ def test_a_trial_of_a_sweep_fails_with_the_sentence_and_is_not_tried_again(
     assert outcome is not None
     assert outcome.state == "failed"
     assert outcome.reason.startswith(f"the task {own}: stagger: the state lacks")
+
+
+def test_a_sweep_of_a_careless_task_leaves_nothing_behind(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    own = "careless_sweep:Careless"
+    (tmp_path / "careless_sweep.py").write_text(
+        "from tests.probes.maze import Maze\n\n\n"
+        "class Careless(Maze):\n    def stagger(self, state, key):\n        pass\n"
+    )
+    write(tmp_path, MAZE)
+    few = "{ppo.environments: 8, ppo.candidates: 16, held_out.starts: 4}"
+    base = (tmp_path / "maze.yaml").read_text().replace(MAZE, own)
+    (tmp_path / "maze.yaml").write_text(base)
+    (tmp_path / "sweep.yaml").write_text(
+        f"config: maze.yaml\nset: {few}\ntrials: 1\nspace: {{ppo.discount: {{choices: [0.9]}}}}\n"
+    )
+    with pytest.raises(InputError, match=f"^the task {own}: stagger: the state lacks"):
+        run_sweep(open_sweep("sweep.yaml", [own]), "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_starts_that_are_all_invalid_later_stop_the_training():
