@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from jaxleas.configuration import read_mapping, with_present_names
 from jaxleas.envs import DEFAULT_TASK, TASKS
@@ -16,7 +16,6 @@ from jaxleas.training import RunConfig, run_config_of
 from jaxleas.types import InputError
 
 State = Literal["finished", "running", "interrupted", "damaged"]
-STATES: tuple[State, ...] = get_args(State)
 HELD_OUT = "held_out/reached"
 SUITE = "transitions"
 """The suite by which runs are listed."""

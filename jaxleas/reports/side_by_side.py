@@ -9,11 +9,6 @@ from jaxleas.reports.published import published
 from jaxleas.reports.table import align, percent
 
 
-def has_plans(evaluation: Evaluation) -> bool:
-    """Return whether an exact planner judged anything."""
-    return any(cell.planner is not None for cell in evaluation.cells)
-
-
 def planners_of(evaluation: Evaluation) -> list[str]:
     """Return the names of the planners that judged, in order of appearance."""
     return list(dict.fromkeys(cell.planner for cell in evaluation.cells if cell.planner))

@@ -8,8 +8,6 @@ from pydantic import AfterValidator, Field, JsonValue, model_validator
 from jaxleas.configuration import Count, Seed, Strict
 from jaxleas.contacts import DEFAULT_JUDGE, require_built_in
 
-Scalar = bool | int | float | str
-
 
 class Dimension(Strict):
     """The possible values of one field of the run configuration: a range or choices."""

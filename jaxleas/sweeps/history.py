@@ -1,7 +1,6 @@
 """The history of a population: which member copied which, and when."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -70,11 +69,3 @@ def read_history(path: Path) -> list[Round]:
 
 def _round(line: bytes, where: str) -> Round:
     return typed(Round, parse_json(line, where), f"{where} is no round of an evolution")
-
-
-def lineage(history: Sequence[Round], member: int) -> list[int]:
-    """Return the members whose weights a member had before each round, then the member itself."""
-    line = [member]
-    for each in reversed(history):
-        line.append(each.parents[line[-1]])
-    return line[::-1]

@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig, draw_values, evolve, perturbed
-from jaxleas.sweeps.history import History, Round, lineage, read_history
+from jaxleas.sweeps.history import History, read_history
 
 SPACE = {
     "ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True),
@@ -89,9 +89,3 @@ def test_history_forgets_a_future_that_was_abandoned(tmp_path):
     assert read_history(path)[0].scores == [0.1, None]
     History(path, 20)
     assert [row.step for row in read_history(path)] == [10, 20]
-
-
-def test_lineage_follows_parents_back():
-    rounds = [Round(n, [], parents, []) for n, parents in enumerate(([0, 0, 2], [0, 1, 1]))]
-    assert lineage(rounds, 2) == [0, 1, 2]
-    assert lineage(rounds, 0) == [0, 0, 0]
