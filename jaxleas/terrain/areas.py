@@ -1,7 +1,9 @@
 """Areas of many polygons at once."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
+
+from jaxleas.terrain.polygons import VERTICAL_SLOPE
 
 _BATCH = 200_000  # polygons at a time, to save memory
 
@@ -14,6 +16,15 @@ def area_vectors(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "N 3
         edges = some[:, 1:] - some[:, :1]
         areas[start : start + _BATCH] = 0.5 * np.cross(edges[:, :-1], edges[:, 1:]).sum(axis=1)
     return areas
+
+
+def are_level(areas: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"]:
+    """Return which polygons have a height above the points of the plane: all but vertical ones.
+
+    Args:
+        areas: area vector of each polygon [m^2].
+    """
+    return np.abs(areas[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(areas, axis=1)
 
 
 def bounds(corners: Float[np.ndarray, "*N 3"]) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.areas import bounds
+from jaxleas.terrain.areas import are_level, bounds
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
 from jaxleas.terrain.polygons import VERTICAL_SLOPE, upwardness
 from jaxleas.terrain.scene import Scene
@@ -142,8 +142,9 @@ def _planes(
 ) -> _Planes:
     following = np.roll(polygons, -1, axis=1)
     centre = polygons.mean(axis=1, keepdims=True)
+    # Not `area_vectors`, which differs in the last bits: so would slopes, and maps made before.
     area = 0.5 * np.cross(polygons - centre, following - centre).sum(axis=1)
-    level = np.abs(area[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(area, axis=1)
+    level = are_level(area)
     polygons, following, area = polygons[level], following[level], area[level]
     cells = (polygons[..., :2] - origin) / resolution
     corners = [cells[:, corner] for corner in range(cells.shape[1])]

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.terrain.areas import area_vectors
-from jaxleas.terrain.polygons import VERTICAL_SLOPE
+from jaxleas.terrain.areas import are_level, area_vectors
 
 HELD = 5e-3
 """Height by which an upper edge may exceed the cells around it and still count as held [m]."""
@@ -18,12 +17,6 @@ a body those beside the edge may lie outside."""
 WELD = 1e-5
 """Distance below which ends of edges are the same point [m]."""
 _CROSSINGS = 2_000_000  # of edges and sides of cells at a time, to save memory
-
-
-def is_level(polygons: Float[np.ndarray, "N V 3"]) -> Bool[np.ndarray, " N"]:
-    """Return which polygons have a height above the points of the plane: all but vertical ones."""
-    area = area_vectors(polygons)
-    return np.abs(area[:, 2]) > VERTICAL_SLOPE * np.linalg.norm(area, axis=1)
 
 
 def raise_sheets(
@@ -48,7 +41,7 @@ def raise_sheets(
         Which cells were raised.
     """
     raised = np.zeros(heights.shape, bool)
-    level = is_level(polygons)
+    level = are_level(area_vectors(polygons))
     ends = _edges(polygons[~level])
     if not len(ends):
         return raised
