@@ -99,3 +99,14 @@ def _ratio(one: str, other: str) -> float:
 
 def _last(name: str) -> str:
     return name.rpartition(".")[2]
+
+
+def hint(name: str, names: list[str], dashes: int = 0) -> str:
+    """Return the end of a message about an unknown field: the nearest of `names`, or all."""
+    close = nearest(name, names)
+    if close is not None:
+        return f"; perhaps you meant {'-' * dashes}{close}"
+    section = name.rpartition(".")[0]
+    prefix = f"{section}." if any(each.startswith(f"{section}.") for each in names) else ""
+    there = [each for each in names if each.startswith(prefix) and "." not in each[len(prefix) :]]
+    return f"; there are {', '.join(there)}"

@@ -5,10 +5,11 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from jaxleas.configuration.fields import Field, fields_of
+from jaxleas.configuration.fields import Field, fields_of, hint
 from jaxleas.configuration.former import present_name
-from jaxleas.configuration.loading import hint, merge, validate
+from jaxleas.configuration.layers import merge
 from jaxleas.configuration.strict import Strict
+from jaxleas.configuration.validation import validate
 from jaxleas.types import InputError
 
 Model = TypeVar("Model", bound=Strict)

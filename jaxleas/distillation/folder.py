@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.files import read_json, require_version
+from jaxleas.runs import POLICY_FILE
 from jaxleas.types import InputError
 
 CONFIG = "config.yaml"
@@ -81,7 +82,7 @@ class RoundFolder:
     @property
     def policy(self) -> Path:
         """Return the file of the policy that practice ended with."""
-        return self.path / "policy.npz"
+        return self.path / POLICY_FILE
 
     @property
     def practised(self) -> Path:
@@ -123,7 +124,7 @@ class DistillationFolder:
     @property
     def policy(self) -> Path:
         """Return the file of the best round's policy."""
-        return self.path / "policy.npz"
+        return self.path / POLICY_FILE
 
     @property
     def surrogate(self) -> Path:

@@ -13,10 +13,8 @@ from jaxleas.envs.steering import Steering, SteeringEnv
 from jaxleas.labels import PLANNER_MODULES, Judge
 from jaxleas.surrogates import Identity
 from jaxleas.terrain import generate_arena
-from jaxleas.training import Devices, Policy, one_device, read_policy, training_world
+from jaxleas.training import POLICY_FILE, Devices, Policy, one_device, read_policy, training_world
 from jaxleas.workers import ProcessWorkers
-
-POLICY_FILE = "policy.npz"
 
 
 class Workplace:

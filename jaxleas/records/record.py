@@ -11,7 +11,7 @@ from jaxleas.envs import DEFAULT_TASK, TASKS
 from jaxleas.evaluation import CellResult, Evaluation, read_evaluation
 from jaxleas.files import is_held, read_json
 from jaxleas.guide import is_policy
-from jaxleas.runs import read_metrics
+from jaxleas.runs import POLICY_FILE, read_metrics
 from jaxleas.training import RunConfig, run_config_of
 from jaxleas.types import InputError
 
@@ -94,7 +94,7 @@ def read_record(path: str | Path) -> RunRecord:
         except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError, OSError) as error:
             problems.append(f"{path}: {read.__name__[1:]} cannot be understood: {error!r}")
     done = found.get("steps", 0) >= (found.get("total") or float("inf"))
-    finished = done and (path / "policy.npz").is_file()
+    finished = done and (path / POLICY_FILE).is_file()
     # Only runs that may be running are asked: asking holds the lock for a moment.
     state: State = "finished" if finished else "running" if is_held(path) else "interrupted"
     if problems and state != "running":  # a run that is just beginning is not complete yet

@@ -1,6 +1,7 @@
 from .background import Background as Background
 from .checkpoints import Checkpoints as Checkpoints
 from .checkpoints import NoCheckpointError as NoCheckpointError
+from .folder import POLICY_FILE as POLICY_FILE
 from .folder import RunFolder as RunFolder
 from .folder import policy_file as policy_file
 from .interruption import Interruption as Interruption

@@ -19,6 +19,8 @@ from jaxleas.runs.provenance import collect_provenance
 from jaxleas.types import InputError
 
 FORMAT = 1
+POLICY_FILE = "policy.npz"
+"""Name of the file with a run's best policy."""
 
 
 class RunFolder:
@@ -140,7 +142,7 @@ def policy_file(run: str | Path) -> Path:
         InputError: the folder is missing, not a run folder, half-written, or of another version.
     """
     folder = RunFolder.open(run, needs_checkpoint=False)
-    file = folder.path / "policy.npz"
+    file = folder.path / POLICY_FILE
     if not file.is_file():
         raise InputError(
             f"the run folder {run} holds no policy.npz yet; resume it with train.py --resume {run}"

@@ -6,11 +6,10 @@ from typing import Any
 
 from jaxleas.contacts import settings_from
 from jaxleas.evaluation import exact_success, make_suite
-from jaxleas.runs import read_metrics
+from jaxleas.runs import POLICY_FILE, read_metrics
 from jaxleas.sweeps.config import Exact, HeldOut, Objective, TimeToSuccess
 
 SUCCESS = "held_out/reached"
-POLICY_FILE = "policy.npz"
 
 
 def is_maximised(objective: Objective) -> bool:

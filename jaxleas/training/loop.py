@@ -1,30 +1,27 @@
 """The training loop: update, log, examine, keep the state, and be ready to stop at any moment."""
 
-import logging
 from collections.abc import Callable, Collection, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 
-import jax
-import numpy as np
-
 from jaxleas.configuration import is_own, methods_of
 from jaxleas.envs import Task
 from jaxleas.runs import (
+    POLICY_FILE,
     Background,
     Checkpoints,
     Interruption,
     MetricsLog,
-    NoCheckpointError,
     Progress,
     RunFolder,
     require_watchers,
 )
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
-from jaxleas.training.policy import Policy, read_policy, write_policy
-from jaxleas.training.processes import from_first
+from jaxleas.training.policy import Policy, read_policy
+from jaxleas.training.recorder import Recorder
 from jaxleas.training.rehearsal import rehearse
+from jaxleas.training.resuming import first_state, mended_best
 from jaxleas.training.run_config import make_task
 from jaxleas.training.stretches import (
     InterruptedRunError,
@@ -33,15 +30,11 @@ from jaxleas.training.stretches import (
     Schedule,
     Stretch,
     non_finite,
-    numbers,
     stretches,
 )
 from jaxleas.training.train_state import Learned, TrainState
 from jaxleas.training.trainer import Trainer
 from jaxleas.types import InputError
-
-POLICY_FILE = "policy.npz"
-_LOG = logging.getLogger("jaxleas")
 
 
 def train(
@@ -112,8 +105,8 @@ def _train(
     config = trainer.config
     checkpoints = Checkpoints(run.checkpoints, config.checkpoints.keep_last)
     resuming = bool(checkpoints.steps())
-    step, state, best = _first_state(trainer, checkpoints, learned)
-    best = _mended_best(trainer, run, checkpoints, best)
+    step, state, best = first_state(trainer, checkpoints, learned)
+    best = mended_best(trainer, run, checkpoints, best)
     total = config.ppo.updates * config.ppo.batch
     with (
         Progress(total, start=step) as progress,
@@ -127,9 +120,7 @@ def _train(
         Interruption() as interruption,
         Background() as background,
     ):
-        recorder = _Recorder(
-            trainer, run, checkpoints, log, progress, background, best, on_examined
-        )
+        recorder = Recorder(trainer, run, checkpoints, log, progress, background, best, on_examined)
         _Session(trainer, interruption, recorder).run(state)
     return read_policy(run.path / POLICY_FILE, of=config.env)
 
@@ -147,75 +138,9 @@ def assist(config: RunConfig, devices: Devices, allow: Collection[str] = ()) -> 
         InterruptedRunError: a signal asked a process to stop.
     """
     trainer = Trainer(config, make_task(config, allow), devices)
-    _, state, _ = _first_state(trainer, None)
+    _, state, _ = first_state(trainer, None)
     with Interruption() as interruption:
         _Session(trainer, interruption, None).run(state)
-
-
-def _first_state(
-    trainer: Trainer, checkpoints: Checkpoints | None, learned: Learned | None = None
-) -> tuple[int, TrainState, float]:
-    """Return step, state and best score to continue from: the newest checkpoint's, or fresh ones.
-
-    Only process 0 has checkpoints; the other processes get its state.
-    """
-    like = trainer.shapes
-    found = None
-
-    def look() -> str:
-        nonlocal found
-        if checkpoints is not None and checkpoints.steps():
-            found = _latest(checkpoints, like)
-        return "fresh" if found is None else "resumed"
-
-    if from_first(look) == "resumed":
-        step, state, note = found or (0, like, {"best": -1.0})
-        return step, trainer.place(state), _best_score(note, step)
-    state = trainer.fresh_state()
-    if learned is not None:
-        state = trainer.place(learned.into(state))
-    kept = trainer.gather(state)
-    if checkpoints is not None:
-        checkpoints.save(0, kept, {"best": -1.0})
-    return 0, state, -1.0
-
-
-def _best_score(note: dict, step: int) -> float:
-    """Return the best score so far, as the note of a checkpoint states it."""
-    best = note.get("best")
-    if isinstance(best, bool) or not isinstance(best, int | float):
-        raise InputError(
-            f"the checkpoint of step {step} is not a training's: its note states no number 'best'"
-        )
-    return float(best)
-
-
-def _latest(checkpoints: Checkpoints, like: TrainState) -> tuple[int, TrainState, dict] | None:
-    """Return the newest state; None if only the very first was written, and it is lost."""
-    try:
-        return checkpoints.latest(like)
-    except NoCheckpointError as error:
-        if checkpoints.steps() != [0]:
-            raise
-        _LOG.warning("%s: no step had been done yet, so training begins anew", error)
-        return None
-
-
-def _mended_best(trainer: Trainer, run: RunFolder, checkpoints: Checkpoints, best: float) -> float:
-    """Make a damaged `policy.npz` again from the best checkpoint; return its score."""
-    if best < 0.0:
-        return best  # no policy was written yet
-    try:
-        read_policy(run.path / POLICY_FILE, of=trainer.config.env)
-    except InputError as damage:
-        try:
-            step, state, _ = checkpoints.best(trainer.shapes)
-        except InputError as error:
-            _LOG.warning("%s; %s: the best policy from here on is kept", damage, error)
-            return -1.0
-        write_policy(run.path / POLICY_FILE, trainer.policy(state))
-        _LOG.warning("%s; it is made again from the checkpoint of step %d", damage, step)
-    return best
 
 
 @dataclass
@@ -224,7 +149,7 @@ class _Session:
 
     trainer: Trainer
     interruption: Interruption
-    recorder: "_Recorder | None"
+    recorder: "Recorder | None"
 
     def run(self, state: TrainState) -> None:
         self.state = state
@@ -289,49 +214,3 @@ class _Session:
         state = self.state
         fractions = self.trainer.examine(self.trainer.held_out, state.normaliser, state.averaged)
         return {name: float(value) for name, value in fractions.items()}
-
-
-@dataclass
-class _Recorder:
-    """Writer of what all processes have computed, on process 0."""
-
-    trainer: Trainer
-    run: RunFolder
-    checkpoints: Checkpoints
-    log: MetricsLog
-    progress: Progress
-    background: Background
-    best: float
-    on_examined: Callable[[], None]
-
-    def record(self, stretch: Stretch, fractions: dict[str, float]) -> None:
-        batch, metrics = self.trainer.config.ppo.batch, {}
-        for update, metrics in stretch.rows:
-            last = update == stretch.done
-            self.log.append(update * batch, numbers(metrics) | (fractions if last else {}))
-        shown = {"return": f"{float(metrics['walk/reward']):.3f} per step"}
-        if fractions:
-            shown["held out"] = f"{100 * fractions['held_out/reached']:.1f} %"
-        self.progress.update(stretch.done * batch, shown)
-
-    def save(self, state: TrainState, done: int, fractions: dict[str, float]) -> None:
-        """Write the state, and the policy if it is the best, while the training continues."""
-        score = fractions.get("held_out/reached")
-        policy = None
-        # Between equals the later wins: its learning rate was smaller and its average longer.
-        if score is not None and score >= self.best:
-            self.best = score
-            policy = jax.tree.map(np.array, self.trainer.policy(state))
-        step = done * self.trainer.config.ppo.batch
-        packed = self.checkpoints.packed(step, state, {"best": self.best}, best_score=score)
-
-        def write() -> None:
-            if policy is not None:
-                write_policy(self.run.path / POLICY_FILE, policy)
-            # Rows first, so that no power cut leaves a checkpoint without them.
-            self.log.sync()
-            self.checkpoints.write(packed)
-
-        self.background.submit(write)
-        if fractions:
-            self.on_examined()

@@ -7,8 +7,8 @@ import pytest
 
 from jaxleas.envs.heads.normal import NormalDistribution
 from jaxleas.envs.steering import Steering, SteeringConfig
-from jaxleas.training.learning import mirror_images, take_robots
 from jaxleas.training.loss import Experience
+from jaxleas.training.minibatches import mirror_images, take_robots
 from jaxleas.training.networks import make_networks
 from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo import make_train_step
