@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from jaxleas.envs.array_checks import kind_of, require_array, require_rows, require_same
-from jaxleas.envs.environment import Examination, Starts, StepResult
 from jaxleas.envs.signature import Signature
+from jaxleas.envs.task_values import Examination, Starts, StepResult
 from jaxleas.types import InputError
 
 LOGGED = ("reward", "failures_per_1000_steps", "goals_per_1000_steps", "valid_starts", "episodes")

@@ -7,142 +7,11 @@ this protocol restart episodes, mirror experience, write policies and export the
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
-import jax
-import jax.numpy as jnp
-from flax import struct
-from jax import Array
-from jaxtyping import Bool, Float, Int
-from pydantic import Field
-
-from jaxleas.configuration import Count, Strict
 from jaxleas.envs.signature import Signature
-from jaxleas.terrain import MAX_TRAINING_SEED
-
-FORMAT = 1
-"""Version of the description that an exported policy carries."""
-
-
-class TaskConfig(Strict, ABC):
-    """A task's section of a run's configuration: `env`.
-
-    Attributes:
-        swept: dotted names of the fields that are numbers in the compiled program and change no
-            shape in it: members of a population may differ in them.
-        moved: former names of fields, of any section of a run: {"ppo.x": "env.y"}; files that use
-            them still open.
-    """
-
-    swept: ClassVar[tuple[str, ...]] = ()
-    moved: ClassVar[Mapping[str, str]] = {}
-
-    task: str
-    """Name of the task, or MODULE:CLASS of the user's own task."""
-
-    @classmethod
-    def suited(cls, stated: Mapping[str, Any]) -> dict[str, Any]:
-        """Return values for a run's sections that suit what its section `env` states.
-
-        They count where neither a file nor the command line states another: the sizes that suit
-        the robot, say.
-
-        Args:
-            stated: values that files and the command line state in the section.
-        """
-        del stated
-        return {}
-
-    def pinned(self) -> Self:
-        """Return the same task, with the absolute path and digest of each file that it names.
-
-        A run folder keeps it in this form: a resumed run finds the files from any folder, and
-        notices when one has changed.
-
-        Raises:
-            InputError: a file is missing.
-        """
-        return self
-
-    @abstractmethod
-    def signature(self) -> Signature:
-        """Return the signature of observation and action; the same at every call."""
-
-    def describe(self) -> dict[str, Any]:
-        """Return the description that an exported policy carries, as plain JSON values by name."""
-        signature = self.signature()
-        parts = [{"name": part.name, "shape": list(part.shape)} for part in signature.seen]
-        return {
-            "format": FORMAT,
-            "task": self.task,
-            "observation": parts,
-            "command": [{"name": head.name} for head in signature.heads],
-            "task_config": self.model_dump(mode="json"),
-        }
-
-
-class WorldsConfig(Strict):
-    """The worlds that a task's robots train in: section `terrain` of a run's configuration."""
-
-    arenas: Count = 64
-    """Number of random arenas."""
-    first_seed: Annotated[int, Field(ge=0, le=MAX_TRAINING_SEED)] = 0
-    """Arena i is generated from seed first_seed + i; evaluation uses seeds beyond these."""
-
-    def pinned(self) -> Self:
-        """Return the same worlds, with the absolute path and digest of each file that they name."""
-        return self
-
-
-@struct.dataclass
-class Starts:
-    """Candidates for the first states of episodes.
-
-    Attributes:
-        state: state of each candidate, a pytree of arrays [candidates, ...].
-        valid: whether an episode may begin at each candidate.
-        group: number of each candidate's group, an index of `Task.groups`.
-    """
-
-    state: Any
-    valid: Bool[Array, " candidates"]
-    group: Int[Array, " candidates"]
-
-
-@struct.dataclass
-class StepResult:
-    """The result of a step, besides the next state.
-
-    Attributes:
-        reward: reward for the step.
-        terminated: whether the episode failed: it ends, and nothing follows.
-        truncated: whether the episode was cut: its future has a value that was not seen.
-        reached: whether the goal sought during the step was reached.
-        measures: further numbers by name, whose means are logged as `walk/NAME`.
-    """
-
-    reward: Float[Array, "*batch"]
-    terminated: Bool[Array, "*batch"]
-    truncated: Bool[Array, "*batch"]
-    reached: Bool[Array, "*batch"]
-    measures: dict[str, Float[Array, "*batch"]] = struct.field(default_factory=dict, kw_only=True)
-
-
-@dataclass(frozen=True)
-class Examination:
-    """The measure of success during training, on worlds that are never trained on.
-
-    Attributes:
-        starts: number of episodes; each is walked by the deterministic policy until it reaches its
-            goal, fails, or runs out of time.
-        steps: largest number of steps of each episode.
-        cells: groups of starts whose success is reported separately, besides that of all.
-    """
-
-    starts: int
-    steps: int
-    cells: tuple[str, ...] = ()
+from jaxleas.envs.task_config import TaskConfig, WorldsConfig
+from jaxleas.envs.task_values import Examination, Starts, StepResult
 
 
 class Task(ABC):
@@ -290,12 +159,3 @@ class Task(ABC):
         """
         cells = self.groups if len(self.groups) > 1 else ()
         return Examination(held_out.starts, held_out.steps, cells)
-
-
-def select(flag: Bool[Array, " robots"], chosen: Any, other: Any) -> Any:
-    """Return, robot by robot, `chosen` where `flag` is true and `other` elsewhere."""
-
-    def pick(left: Array, right: Array) -> Array:
-        return jnp.where(flag.reshape(flag.shape + (1,) * (left.ndim - flag.ndim)), left, right)
-
-    return jax.tree.map(pick, chosen, other)

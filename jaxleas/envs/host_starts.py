@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.environment import Starts
+from jaxleas.envs.task_values import Starts
 from jaxleas.types import InputError
 
 

@@ -4,7 +4,8 @@ import inspect
 from typing import Any
 
 from jaxleas.configuration import require_field
-from jaxleas.envs.environment import Task, TaskConfig, WorldsConfig
+from jaxleas.envs.environment import Task
+from jaxleas.envs.task_config import TaskConfig, WorldsConfig
 from jaxleas.types import InputError
 
 

@@ -8,7 +8,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int, Key
 
-from jaxleas.envs.environment import Starts, select
+from jaxleas.envs.task_values import Starts, select
 from jaxleas.xla import take_inside
 
 

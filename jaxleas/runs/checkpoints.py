@@ -15,21 +15,17 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from jaxleas.files import DamagedError, atomic_path, parse_json, read_arrays, sweep_temporaries
+from jaxleas.files import atomic_path, sweep_temporaries
+from jaxleas.runs.checkpoint_files import FORMAT, CheckpointDamageError, read_checkpoint
 from jaxleas.runs.checkpoint_leaves import pack, unpack
 from jaxleas.types import InputError
 
-FORMAT = 1
 State = TypeVar("State")
 _LOG = logging.getLogger("jaxleas")
 
 
 class NoCheckpointError(InputError):
     """There is no checkpoint, or no readable one."""
-
-
-class _DamageError(Exception):
-    """A checkpoint file that cannot be read whole."""
 
 
 @dataclass(frozen=True)
@@ -137,8 +133,8 @@ class Checkpoints:
         for step in steps:
             path = self._path(step)
             try:
-                manifest, arrays = _read(path)
-            except _DamageError as damage:
+                manifest, arrays = read_checkpoint(path)
+            except CheckpointDamageError as damage:
                 damages.append(f"{path.name} is damaged ({damage})")
                 continue
             if damages:
@@ -159,8 +155,8 @@ class Checkpoints:
         scores = {}
         for step in self.steps():
             try:
-                score = _read(self._path(step), manifest_only=True)[0]["score"]
-            except _DamageError:
+                score = read_checkpoint(self._path(step), manifest_only=True)[0]["score"]
+            except CheckpointDamageError:
                 continue
             if score is not None and math.isfinite(score):
                 scores[step] = score
@@ -175,38 +171,3 @@ class Checkpoints:
 
     def _path(self, step: int) -> Path:
         return self.folder / f"step_{step:012d}.npz"
-
-
-def _read(path: Path, manifest_only: bool = False) -> tuple[Any, dict[str, np.ndarray]]:
-    """Return manifest and arrays; the file may have any size, but cannot unpack to more."""
-    try:
-        arrays = read_arrays(path, max_bytes=None, only="manifest" if manifest_only else None)
-        manifest = parse_json(arrays.pop("manifest").tobytes(), "its manifest")
-    except (DamagedError, KeyError, InputError) as error:
-        raise _DamageError(ascii(str(error))[1:100]) from error
-    if not isinstance(manifest, dict) or manifest.get("format") != FORMAT:
-        found = manifest.get("format") if isinstance(manifest, dict) else None
-        raise InputError(f"{path} is in format {str(found)[:20]}; this version reads {FORMAT}")
-    if not _is_manifest(manifest):
-        raise _DamageError("its manifest is not that of a checkpoint")
-    stated = {entry["name"] for entry in manifest["leaves"] if "value" not in entry}
-    if not manifest_only and stated != arrays.keys():
-        raise _DamageError("an array is missing")
-    return manifest, arrays
-
-
-def _is_manifest(manifest: dict[str, Any]) -> bool:
-    leaves, score = manifest.get("leaves"), manifest.get("score", "missing")
-    return (
-        isinstance(leaves, list)
-        and all(
-            isinstance(leaf, dict)
-            and isinstance(leaf.get("name"), str)
-            and isinstance(leaf.get("type"), str)
-            and isinstance(leaf.get("random_key", ""), str)
-            and isinstance(leaf.get("value", 0), bool | int | float)
-            for leaf in leaves
-        )
-        and (score is None or (isinstance(score, int | float) and not isinstance(score, bool)))
-        and isinstance(manifest.get("note"), dict)
-    )

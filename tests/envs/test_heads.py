@@ -7,7 +7,8 @@ import pytest
 
 from jaxleas.envs.heads import Ball, Categorical, Interval, Normal
 from jaxleas.envs.mirror import Mirror
-from jaxleas.envs.signature import Part, Signature
+from jaxleas.envs.part import Part
+from jaxleas.envs.signature import Signature
 from jaxleas.types import InputError
 
 NORMAL = Normal("move", (Ball(2.0, 2), Interval(1.0, 5.0)), Mirror((0, 1, 2), (1.0, -1.0, 1.0)))

@@ -3,10 +3,13 @@
 import jax
 import jax.numpy as jnp
 
-from jaxleas.envs.environment import Starts, StepResult, Task, TaskConfig
+from jaxleas.envs.environment import Task
 from jaxleas.envs.heads import Ball, Normal
 from jaxleas.envs.mirror import Mirror
-from jaxleas.envs.signature import Part, Signature
+from jaxleas.envs.part import Part
+from jaxleas.envs.signature import Signature
+from jaxleas.envs.task_config import TaskConfig
+from jaxleas.envs.task_values import Starts, StepResult
 
 LEFT_RIGHT = Mirror.of_signs([1.0, -1.0])
 

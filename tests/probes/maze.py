@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from jaxleas.envs.environment import Starts, StepResult, Task, TaskConfig
+from jaxleas.envs.environment import Task
 from jaxleas.envs.heads import Categorical
 from jaxleas.envs.mirror import Mirror
-from jaxleas.envs.signature import Part, Signature
+from jaxleas.envs.part import Part
+from jaxleas.envs.signature import Signature
+from jaxleas.envs.task_config import TaskConfig
+from jaxleas.envs.task_values import Starts, StepResult
 
 SIDE = 4
 VIEW = 2 * SIDE - 1  # side of what is seen: the goal relative to the walker

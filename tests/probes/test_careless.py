@@ -6,8 +6,9 @@ import jax.numpy as jnp
 import pytest
 
 from jaxleas.configuration.own_code import methods_of
-from jaxleas.envs.environment import Examination, Task
+from jaxleas.envs.environment import Task
 from jaxleas.envs.registry import TASKS
+from jaxleas.envs.task_values import Examination
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.job import do_job, read_outcome, write_job
 from jaxleas.sweeps.sweep import run_sweep

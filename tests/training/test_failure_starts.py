@@ -5,11 +5,14 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.environment import Starts, StepResult, Task, TaskConfig
+from jaxleas.envs.environment import Task
 from jaxleas.envs.heads import Interval, Normal
 from jaxleas.envs.host_starts import HostPool
-from jaxleas.envs.signature import Part, Signature
+from jaxleas.envs.part import Part
+from jaxleas.envs.signature import Signature
 from jaxleas.envs.starts import draw_failing_picks, pool_of
+from jaxleas.envs.task_config import TaskConfig
+from jaxleas.envs.task_values import Starts, StepResult
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.training.config import RunConfig
 from jaxleas.training.failures import Failures, counted, counted_on_host

@@ -15,12 +15,9 @@ from jax import Array
 from jaxtyping import Float, Key
 
 from jaxleas.envs import Part
-from jaxleas.training.brax_blocks import ACTIVATION
-from jaxleas.training.networks.activations import onnx_activation
-from jaxleas.training.networks.mlp import Mlp, array_of_shape, layers_of, params_of
+from jaxleas.training.networks.map_code import MapCode
+from jaxleas.training.networks.mlp import Mlp, layers_of, params_of
 from jaxleas.types import OnnxNodes
-
-STRIDE = 2
 
 
 @dataclass(frozen=True)
@@ -56,12 +53,13 @@ class MapEncoder:
         return sum(_size(shape) for shape in self.shapes)
 
     @property
-    def _maps(self) -> list[tuple[int, tuple[int, int]]]:
-        """Position in the input at which each map begins, and its shape."""
+    def _maps(self) -> list[tuple[int, MapCode]]:
+        """Position in the input at which each map begins, and its encoder."""
         begin, found = 0, []
         for shape in self.shapes:
             if len(shape) == 2:
-                found.append((begin, (shape[0], shape[1])))
+                sizes = (self.channels, self.kernels, self.latent, self.activation)
+                found.append((begin, MapCode((shape[0], shape[1]), *sizes)))
             begin += _size(shape)
         return found
 
@@ -71,43 +69,10 @@ class MapEncoder:
         inputs = vectors + self.latent * len(self._maps)
         return Mlp(inputs, self.hidden, self.outputs, self.activation)
 
-    def _sizes(self, shape: tuple[int, int]) -> tuple[int, int]:
-        """Return rows and columns after the convolutions: each halves them, rounding up."""
-        rows, columns = shape
-        for _ in self.channels:
-            rows, columns = -(-rows // STRIDE), -(-columns // STRIDE)
-        return rows, columns
-
-    def _shapes(self, shape: tuple[int, int]) -> dict[str, tuple[int, ...]]:
-        """Return the shapes of an encoder's arrays by name."""
-        found: dict[str, tuple[int, ...]] = {}
-        before = 1
-        for index, (channels, side) in enumerate(zip(self.channels, self.kernels, strict=True)):
-            found[f"convolution_{index}"] = (channels, before, side, side)
-            found[f"convolution_bias_{index}"] = (channels,)
-            before = channels
-        rows, columns = self._sizes(shape)
-        found["latent_kernel"] = (before * rows * columns, self.latent)
-        found["latent_bias"] = (self.latent,)
-        return found
-
     def init(self, key: Key[Array, ""]) -> Any:
         """Return untrained parameters: LeCun's uniform kernels, biases of zero."""
         joined_key, *keys = jax.random.split(key, 1 + len(self._maps))
-        encoders = []
-        for each, (_, shape) in zip(keys, self._maps, strict=True):
-            shapes = self._shapes(shape)
-            arrays = {}
-            for part_key, (name, size) in zip(
-                jax.random.split(each, len(shapes)), shapes.items(), strict=True
-            ):
-                if "bias" in name:
-                    arrays[name] = jnp.zeros(size)
-                else:
-                    fan_in = size[0] if len(size) == 2 else size[1] * size[2] * size[3]
-                    bound = (3.0 / fan_in) ** 0.5
-                    arrays[name] = jax.random.uniform(part_key, size, minval=-bound, maxval=bound)
-            encoders.append(arrays)
+        encoders = [encoder.init(each) for each, (_, encoder) in zip(keys, self._maps, strict=True)]
         return {"maps": encoders, **self._joined.init(joined_key)}
 
     def answer(
@@ -128,21 +93,10 @@ class MapEncoder:
 
     def _encode(self, params: Any, rows: Array) -> Array:
         """Return the vectors, then the encoding of each map."""
-        batch = rows.shape[:-1]
-        activate = ACTIVATION[self.activation]
-        latents = []
-        for arrays, (begin, shape) in zip(params["maps"], self._maps, strict=True):
-            image = rows[..., begin : begin + _size(shape)].reshape(-1, 1, *shape)
-            for index, side in enumerate(self.kernels):
-                kernel = arrays[f"convolution_{index}"].astype(image.dtype)
-                padding = [_padding(length, side) for length in image.shape[2:]]
-                image = jax.lax.conv_general_dilated(image, kernel, (STRIDE, STRIDE), padding)
-                bias = arrays[f"convolution_bias_{index}"].astype(image.dtype)
-                image = activate(image + bias.reshape(1, -1, 1, 1))
-            flat = image.reshape(image.shape[0], -1)
-            latent = flat @ arrays["latent_kernel"].astype(flat.dtype)
-            latent = activate(latent + arrays["latent_bias"].astype(flat.dtype).reshape(1, -1))
-            latents.append(latent.reshape(*batch, self.latent))
+        latents = [
+            encoder.encode(arrays, rows[..., begin : begin + _size(encoder.shape)])
+            for arrays, (begin, encoder) in zip(params["maps"], self._maps, strict=True)
+        ]
         return jnp.concatenate([*self._vectors(rows), *latents], axis=-1)
 
     def _vectors(self, rows: Array) -> list[Array]:
@@ -165,11 +119,8 @@ class MapEncoder:
     def parameters(self, arrays: Mapping[str, np.ndarray]) -> Any:
         """Return the parameters that `arrays` turned into named arrays."""
         encoders = [
-            {
-                name: array_of_shape(arrays, f"map_{number}_{name}", size)
-                for name, size in self._shapes(shape).items()
-            }
-            for number, (_, shape) in enumerate(self._maps)
+            encoder.parameters(arrays, f"map_{number}_")
+            for number, (_, encoder) in enumerate(self._maps)
         ]
         joined = layers_of(self._joined.parameters(arrays))
         return {"maps": encoders, **params_of(joined)}
@@ -177,34 +128,16 @@ class MapEncoder:
     def onnx(self, nodes: OnnxNodes, params: Any, rows: str) -> str:
         """Add Conv nodes for each map, and the perceptron over everything."""
         joined, latents, begin = [], [], 0
-        encoders = iter(params["maps"])
+        encoders = iter(zip(params["maps"], self._maps, strict=True))
         for shape in self.shapes:
             part = nodes.columns(rows, begin, begin + _size(shape))
             begin += _size(shape)
             if len(shape) == 2:
-                latents.append(self._onnx_map(nodes, next(encoders), (shape[0], shape[1]), part))
+                weights, (_, encoder) = next(encoders)
+                latents.append(encoder.onnx(nodes, weights, part))
             else:
                 joined.append(part)
         return self._joined.onnx(nodes, params, nodes.add("Concat", *joined, *latents, axis=1))
-
-    def _onnx_map(self, nodes: OnnxNodes, arrays: Any, shape: tuple[int, int], part: str) -> str:
-        image = nodes.add("Reshape", part, nodes.constant([-1, 1, *shape], np.int64))
-        rows, columns = shape
-        for index, side in enumerate(self.kernels):
-            (top, bottom), (left, right) = _padding(rows, side), _padding(columns, side)
-            image = nodes.add(
-                "Conv",
-                image,
-                nodes.constant(arrays[f"convolution_{index}"]),
-                nodes.constant(arrays[f"convolution_bias_{index}"]),
-                strides=[STRIDE, STRIDE],
-                pads=[top, left, bottom, right],
-            )
-            image = onnx_activation(nodes, self.activation, image)
-            rows, columns = -(-rows // STRIDE), -(-columns // STRIDE)
-        kernel, bias = (nodes.constant(arrays[f"latent_{name}"]) for name in ("kernel", "bias"))
-        latent = nodes.add("Gemm", nodes.add("Flatten", image, axis=1), kernel, bias)
-        return onnx_activation(nodes, self.activation, latent)
 
     def describe(self) -> dict[str, Any]:
         """Return the kind and sizes of the network."""
@@ -219,9 +152,3 @@ class MapEncoder:
 
 def _size(shape: tuple[int, ...]) -> int:
     return int(np.prod(shape))
-
-
-def _padding(length: int, side: int) -> tuple[int, int]:
-    """Return the zeros before and after an axis that make it ceil(length / 2) long."""
-    total = max((-(-length // STRIDE) - 1) * STRIDE + side - length, 0)
-    return total // 2, total - total // 2
