@@ -18,7 +18,7 @@ from jaxleas.runs import Interruption
 from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import Objective
 from jaxleas.sweeps.folder import SweepFolder
-from jaxleas.sweeps.job import Outcome, outcome_file, read_job, stop_file, write_job
+from jaxleas.sweeps.job_files import Outcome, outcome_file, read_job, stop_file, write_job
 from jaxleas.sweeps.objectives import learning_curve
 from jaxleas.sweeps.open_trial import OpenTrial, result_of
 from jaxleas.sweeps.results import TrialResult, write_results

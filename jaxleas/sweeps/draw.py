@@ -5,8 +5,9 @@ from typing import Any
 
 from optuna.trial import BaseTrial
 
-from jaxleas.sweeps.border import Sweep, allowed
+from jaxleas.sweeps.border import Sweep
 from jaxleas.sweeps.config import Dimension
+from jaxleas.sweeps.space import allowed
 
 
 def draw(trial: BaseTrial, sweep: Sweep) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.sweeps.folder import SweepFolder
-from jaxleas.sweeps.job import Outcome, read_outcome
+from jaxleas.sweeps.job_files import Outcome, read_outcome
 from jaxleas.sweeps.results import TrialResult
 from jaxleas.training import RunConfig
 

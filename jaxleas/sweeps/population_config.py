@@ -10,9 +10,9 @@ from pydantic import Field, model_validator
 
 from jaxleas.configuration import Strict, load_config, present_name, require_field, with_values
 from jaxleas.envs import TASKS
-from jaxleas.sweeps.border import check_dimension
 from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
+from jaxleas.sweeps.space import check_dimension
 from jaxleas.training import RunConfig, load_run_config, pinned, swept_fields
 from jaxleas.types import InputError
 

@@ -6,7 +6,8 @@ from importlib import import_module
 from typing import Any
 
 from jaxleas.types import InputError
-from jaxleas.workers.processes import MOST_DEATHS, Answer, Task, WorkerError, require_count
+from jaxleas.workers.processes import MOST_DEATHS, WorkerError
+from jaxleas.workers.workers import Answer, Task, require_count
 
 
 class RayWorkers:

@@ -10,7 +10,8 @@ from jaxleas.envs.environment import Task
 from jaxleas.envs.registry import TASKS
 from jaxleas.envs.task_values import Examination
 from jaxleas.sweeps.border import open_sweep
-from jaxleas.sweeps.job import do_job, read_outcome, write_job
+from jaxleas.sweeps.job import do_job
+from jaxleas.sweeps.job_files import read_outcome, write_job
 from jaxleas.sweeps.sweep import run_sweep
 from jaxleas.training.loop import _Session
 from jaxleas.training.rehearsal import rehearse

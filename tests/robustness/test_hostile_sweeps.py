@@ -6,7 +6,7 @@ from jaxleas.files import read_json, write_json
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
 from jaxleas.sweeps.history import read_history
-from jaxleas.sweeps.job import read_job, read_outcome
+from jaxleas.sweeps.job_files import read_job, read_outcome
 from jaxleas.sweeps.population_config import open_population
 from jaxleas.sweeps.population_folder import hold_population
 from jaxleas.sweeps.study import RESULT, Study, read_results

@@ -17,7 +17,8 @@ import pytest
 from jaxleas.files import InUseError, write_json
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
-from jaxleas.sweeps.job import LIFELINE, Outcome, outcome_file, patiently, write_job
+from jaxleas.sweeps.job import LIFELINE, patiently
+from jaxleas.sweeps.job_files import Outcome, outcome_file, write_job
 from jaxleas.sweeps.results import TrialResult
 from jaxleas.sweeps.run_folders import hold_run_folder
 from jaxleas.sweeps.study import Study, read_results

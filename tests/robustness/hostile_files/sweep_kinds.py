@@ -28,7 +28,7 @@ def sweep_kinds(folder: Path) -> list[Kind]:
     from jaxleas.sweeps.evolution import Succession
     from jaxleas.sweeps.folder import open_folder
     from jaxleas.sweeps.history import History, read_history
-    from jaxleas.sweeps.job import Outcome, read_job, read_outcome, write_job
+    from jaxleas.sweeps.job_files import Outcome, read_job, read_outcome, write_job
     from jaxleas.sweeps.population_config import open_population
     from jaxleas.sweeps.population_folder import hold_population
     from jaxleas.sweeps.results import TrialResult, write_results
