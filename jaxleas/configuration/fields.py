@@ -3,7 +3,7 @@
 import difflib
 import types
 import typing
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,7 +35,7 @@ def fields_of(model: type[BaseModel], prefix: str = "") -> Iterator[Field]:
             yield from fields_of(section, f"{prefix}{key}.")
 
 
-def nearest(name: str, names: list[str]) -> str | None:
+def nearest(name: str, names: Collection[str]) -> str | None:
     """Return the entry of `names` that `name` probably stands for, if any is close.
 
     The last part of the dotted name decides, so that `learning_rate` at the top level finds

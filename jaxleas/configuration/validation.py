@@ -1,11 +1,12 @@
 """One validation of all that files and the command line state, with one sentence for a mistake."""
 
 import json
+import re
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from jaxleas.configuration.fields import fields_of, hint
+from jaxleas.configuration.fields import fields_of, hint, nearest
 from jaxleas.configuration.former import with_present_names
 from jaxleas.configuration.layers import Layers, merge
 from jaxleas.configuration.strict import Strict
@@ -57,6 +58,9 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
         return f"{source}: {name} is missing and has no default"
     if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once
         return f"{source}: {f'{name}: ' if name else ''}{problem}"
+    if error["type"] == "literal_error":
+        close = nearest(str(error["input"]), re.findall("'([^']+)'", error["ctx"]["expected"]))
+        problem += f"; perhaps you meant {close}" if close else ""
     return f"{source}: {name} is {error['input']!r}, but {problem}"
 
 

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
-from jaxleas.configuration import Registry, is_own, misspelt
+from jaxleas.configuration import Registry, is_own, misspelt, nearest
 from jaxleas.contacts.own_planner import JudgedByOwn, OwnPlanner
 from jaxleas.contacts.planner import Measure, Planner
 from jaxleas.types import InputError
@@ -110,5 +110,9 @@ def require_built_in(name: str) -> str:
         ValueError: the name is not a built-in planner's.
     """
     if name not in PLANNERS:
-        raise ValueError(f"there is no planner {name!r} here; there are {', '.join(PLANNERS)}")
+        close = nearest(name, PLANNERS.targets)
+        meant = f"; perhaps you meant {close}" if close else ""
+        raise ValueError(
+            f"there is no planner {name!r} here{meant}; there are {', '.join(PLANNERS)}"
+        )
     return name

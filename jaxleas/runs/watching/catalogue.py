@@ -5,6 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from jaxleas.configuration import nearest
 from jaxleas.runs.watching.watcher import Watcher
 from jaxleas.types import InputError
 
@@ -21,9 +22,16 @@ def require_watchers(names: Sequence[str]) -> None:
     """Refuse watchers that are not available, before anything is computed or written.
 
     Raises:
-        InputError: a client is not installed, or its settings do not work.
+        InputError: there is no such watcher, a client is not installed, or its settings do not
+            work.
     """
     for name in names:
+        if name not in WATCHERS:
+            close = nearest(name, WATCHERS)
+            meant = f"; perhaps you meant {close}" if close else ""
+            raise InputError(
+                f"watch: there is no watcher {name!r}{meant}; there are {', '.join(WATCHERS)}"
+            )
         client, _, _ = WATCHERS[name]
         try:
             module = import_module(client)
