@@ -10,6 +10,10 @@ from jaxleas.types import InputError
 
 KEYS = ("threefry2x32", "rbg", "unsafe_rbg")
 """JAX's kinds of random keys."""
+_ANEW = (
+    "; another version or configuration wrote it, and this one cannot resume it: begin a new run"
+    " with its config.yaml (its policy can still be used)"
+)
 
 
 def pack(state: Any) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
@@ -59,13 +63,14 @@ def unpack(
     wanted = _named_leaves(like)
     unknown = [] if partial else sorted(held.keys() - {name for name, _ in wanted})
     if unknown:
-        raise InputError(f"{source} is of another state: it also holds {unknown[0]}")
+        raise InputError(f"{source} is of another state: it also holds {unknown[0]}{_ANEW}")
     leaves = []
     for name, leaf in wanted:
         found = held[name]["type"] if name in held else "missing"
         if found != _type_of(leaf):
             raise InputError(
                 f"{source} is of another state: {name} is {found} there and {_type_of(leaf)} here"
+                f"{_ANEW}"
             )
         if not _is_restorable(leaf, held[name], arrays):
             raise InputError(f"{source} is damaged: {name} does not hold what it says it does")
