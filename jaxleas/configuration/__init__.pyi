@@ -12,9 +12,9 @@ from .former import present_name as present_name
 from .former import with_present_names as with_present_names
 from .layers import Layers as Layers
 from .layers import layers_of as layers_of
+from .layers import merge as merge
 from .loading import load_config as load_config
 from .loading import load_layers as load_layers
-from .loading import merge as merge
 from .loading import to_yaml as to_yaml
 from .own_code import methods_of as methods_of
 from .own_code import own_code as own_code
