@@ -5,12 +5,12 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from jaxleas.configuration import Strict
-from jaxleas.contacts.from_guide import EVERY, WINDOW, Candidates
 from jaxleas.contacts.models import default_model_of, model_note
 from jaxleas.contacts.problem import Model
 from jaxleas.contacts.programs.attempt import MAX_COMBINATIONS
 from jaxleas.contacts.programs.slack_weights import SlackWeights
 from jaxleas.contacts.settings import PlannerSettings
+from jaxleas.contacts.stepping import EVERY, WINDOW, Candidates
 
 Cost = Literal["none", "linear", "quadratic"]
 
