@@ -7,6 +7,7 @@ a trunk wholly inside a solid goes unnoticed, while the map's C refuses both.
 """
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -73,7 +74,7 @@ def exact_collision(
         position: position of the root in the world [m].
         yaw: heading of the root [rad].
     """
-    boxes = [Polytope.from_box(box) for box in robot.trunk]
+    boxes = [_box_with_corners(box) for box in robot.trunk]
     return ~_meets_any(boxes, polygons, position, yaw)
 
 
@@ -99,6 +100,10 @@ def reconfirm(
     if len(refused):
         holds[refused] = exact(np.asarray(position)[refused], np.asarray(yaw)[refused])
     return holds
+
+
+_box_with_corners = cache(Polytope.from_box)
+"""Finding the corners of a polytope takes a linear program, longer than to judge a short path."""
 
 
 def _meets_any(

@@ -3,6 +3,7 @@ from .certificate import certify as certify
 from .from_guide import Stepping as Stepping
 from .from_guide import problem_from_guide as problem_from_guide
 from .guide_file import read_guide_path as read_guide_path
+from .guide_robot import planned_robot as planned_robot
 from .landings import Landing as Landing
 from .landings import landings_of as landings_of
 from .own_planner import Outcome as Outcome

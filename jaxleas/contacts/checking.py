@@ -8,8 +8,7 @@ from jaxleas.contacts.plan_report import draw_along_guide
 from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
-from jaxleas.robots import DEFAULT_ROBOT, load_robot
-from jaxleas.terrain import load_scene
+from jaxleas.robots import load_robot
 from jaxleas.types import InputError, JaxleasError
 
 
@@ -28,13 +27,12 @@ def followed_by(
     robot: str | None,
 ) -> AskedGuide:
     """Return the guide path that a plan follows, the scene and the robot."""
-    from jaxleas.contacts.guide_file import read_guide_path
+    from jaxleas.contacts.guide_robot import read_asked
 
     if problem is not None and guide is None and scene is None:
         return along_roots(read_problem(problem), robot)
     if problem is None and guide is not None and scene is not None:
-        followed = read_guide_path(guide, query)
-        return AskedGuide(robot or DEFAULT_ROBOT, followed, load_scene(scene))
+        return read_asked(guide, query, scene, robot)[0]
     raise InputError(
         f"{plan} holds postures along a guide path: it is checked against its guide and scene,"
         " with --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"

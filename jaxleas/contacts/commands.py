@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from jaxleas.contacts.along_guide import plan_along
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
 from jaxleas.contacts.from_guide import Candidates, Stepping, problem_from_guide
@@ -15,8 +16,6 @@ from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
-from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.terrain import load_scene
 from jaxleas.types import InputError
 
 
@@ -78,7 +77,8 @@ def check(
         guide: the guide path it follows, .npz (sampling).
         scene: the scene it crosses, .json or a mesh (sampling).
         query: number of the path in the guide's file.
-        robot: robot of a plan that follows a guide (sampling), talos by default.
+        robot: robot of a plan that follows a guide (sampling); by default the one that walked the
+            guide path, or talos where its file does not say.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
     read = read_plan(plan)
@@ -111,7 +111,7 @@ def contacts(
     out: Path,
     problem: Path | None = None,
     query: int = 0,
-    robot: str = DEFAULT_ROBOT,
+    robot: str | None = None,
     model: Model | None = None,
     every: int | None = None,
     candidates: Candidates | None = None,
@@ -130,7 +130,8 @@ def contacts(
         out: the plan, .json.
         problem: file to write the contact problem to, too, .json.
         query: number of the path in the file.
-        robot: robot whose step polytopes are used.
+        robot: robot whose step polytopes are used; by default the one that walked the guide path,
+            or talos where its file does not say.
         model: two_com (with the centre of mass) or feet; by default two_com where the robot has two
             feet and step polytopes of its centre of mass.
         every: keep every N-th configuration; by default the planner's own number.
@@ -143,7 +144,7 @@ def contacts(
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
-    from jaxleas.contacts.guide_file import read_guide_path
+    from jaxleas.contacts.guide_robot import read_asked
 
     _require_writable_names(out, picture)
     found = find_planner(planner, [planner])
@@ -154,29 +155,29 @@ def contacts(
     if found.needs == "guide":
         _require_own_contacts(found, problem=problem, **options, cost=given["cost"])
         settings = plan_settings_from(found, keep_every=every, **given)
-        followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
+        followed, ending = read_asked(guide, query, scene, robot)
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return report_plan(answer, followed, out, picture)
+        return report_plan(answer.but(guide_ended=ending), followed, out, picture)
     settings = plan_settings_from(found, **given)
-    followed = AskedGuide(robot, read_guide_path(guide, query), load_scene(scene))
-    made = _problem(found, followed, every, options)
-    if note := model_note(model, robot):
+    followed, ending = read_asked(guide, query, scene, robot)
+    kept = found.settings().keep_every if every is None else every
+    made = _problem(followed, kept, options)
+    if note := model_note(model, followed.robot):
         print(note)
     if problem is not None:
         write_problem(problem, made)
-    return report_plan(found.plan(made, settings, time_limit=time_limit), made, out, picture)
+    answer = plan_along(found, followed, made, kept, settings, time_limit)
+    return report_plan(answer.but(guide_ended=ending), made, out, picture)
 
 
-def _problem(
-    planner: Planner, asked: AskedGuide, every: int | None, options: dict[str, Any]
-) -> ContactProblem:
-    """Make the contact problem of a guide, by default as the planner does when it judges."""
+def _problem(asked: AskedGuide, every: int, options: dict[str, Any]) -> ContactProblem:
+    """Make the contact problem of a guide."""
     chosen = {name: each for name, each in options.items() if each is not None}
     return problem_from_guide(
         asked.guide,
         asked.scene,
         asked.robot,
-        Stepping(every=planner.settings().keep_every if every is None else every, **chosen),
+        Stepping(every=every, **chosen),
     )
 
 

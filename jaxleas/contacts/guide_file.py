@@ -1,17 +1,47 @@
 """Guide paths, read from their file by its documented format (docs/files.md)."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from jaxleas.files import read_npz, require_version_array
-from jaxleas.types import GuidePath, InputError
+from jaxleas.robots import RecordedRobot
+from jaxleas.types import Ending, GuidePath, InputError, ending_of
 
 NEEDED = ("time", "position", "yaw", "velocity", "valid")
 
 
+@dataclass(frozen=True, eq=False)
+class Walked:
+    """One guide path of a file.
+
+    Attributes:
+        guide: guide path.
+        ending: how it ended.
+        robot: robot that walked it; None in files from before robots were recorded.
+    """
+
+    guide: GuidePath
+    ending: Ending
+    robot: RecordedRobot | None
+
+
 def read_guide_path(path: str | Path, query: int = 0) -> GuidePath:
     """Return one guide path of a file.
+
+    Args:
+        path: the .npz file.
+        query: number of the path in the file, counted from 0.
+
+    Raises:
+        InputError: the file cannot be used, or has no such path.
+    """
+    return read_walked(path, query).guide
+
+
+def read_walked(path: str | Path, query: int = 0) -> Walked:
+    """Return one guide path of a file, with how it ended and who walked it.
 
     Args:
         path: the .npz file.
@@ -36,10 +66,13 @@ def read_guide_path(path: str | Path, query: int = 0) -> GuidePath:
     mine = owner == query
     if not mine.any():
         raise InputError(f"{path} has no path {query}; it holds paths 0 to {int(owner.max())}")
-    return GuidePath(
+    guide = GuidePath(
         time=arrays["time"][mine],
         position=arrays["position"][mine].astype(np.float64),
         yaw=arrays["yaw"][mine].astype(np.float64),
         velocity=arrays["velocity"][mine],
         valid=arrays["valid"][mine].astype(bool),
     )
+    reasons = arrays.get("reason", np.array([], np.str_))
+    said = str(reasons[query]) if reasons.ndim == 1 and query < len(reasons) else ""
+    return Walked(guide, ending_of(guide, said), RecordedRobot.from_arrays(arrays, path))

@@ -1,5 +1,6 @@
 """The contact plan: a planner's answer, as a value and as a file (docs/contacts.md)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -9,7 +10,7 @@ from jaxtyping import Float
 
 from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
 from jaxleas.files import read_json, require_version, write_json
-from jaxleas.types import InputError
+from jaxleas.types import CAUSES, ENDINGS, Cause, Ending, InputError
 
 Status = Literal["feasible", "infeasible", "time_limit", "not_found"]
 VERSION = 1
@@ -42,6 +43,10 @@ class ContactPlan:
         postures: poses of all feet at each kept configuration of the guide; None for planners
             without postures.
         gap: gap between a standing sole and its surface in these postures [m].
+        cause: kind of reason for which there is no plan, where the planner states one; None for a
+            plan.
+        guide_ended: how the guide path ended that the plan follows, whatever the planner found;
+            None for a problem without one.
     """
 
     planner: str
@@ -59,6 +64,8 @@ class ContactPlan:
     robustness: tuple[float, ...] | None = None
     postures: tuple[Posture, ...] | None = None
     gap: float = 0.0
+    cause: Cause | None = None
+    guide_ended: Ending | None = None
 
     def but(self, **changes: Any) -> "ContactPlan":
         """Return the plan with some attributes changed."""
@@ -88,6 +95,8 @@ def write_plan(path: str | Path, plan: ContactPlan) -> None:
             "undecided": plan.undecided,
             "postures": postures,
             "gap": plan.gap,
+            "cause": plan.cause,
+            "guide_ended": plan.guide_ended,
         },
     )
 
@@ -130,6 +139,8 @@ def read_plan(path: str | Path) -> ContactPlan:
         robustness=_robustness(path, content.get("robustness")),
         postures=None if postures is None else _postures(path, postures),
         gap=_number(path, content, "gap") or 0.0,
+        cause=_word(path, content, "cause", CAUSES),
+        guide_ended=_word(path, content, "guide_ended", ENDINGS),
     )
 
 
@@ -140,6 +151,13 @@ def _number(path: str | Path, content: dict[str, Any], key: str) -> float | None
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{path}: {key} must be a number, or null, not {value!r:.60}")
     return float(value)
+
+
+def _word(path: str | Path, content: dict[str, Any], key: str, known: Mapping[Any, str]) -> Any:
+    value = content.get(key)
+    if value is not None and value not in list(known):
+        raise InputError(f"{path}: {key} must be one of {', '.join(known)}, or null")
+    return value
 
 
 def _count(path: str | Path, content: dict[str, Any], key: str) -> int | None:

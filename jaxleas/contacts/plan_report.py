@@ -7,8 +7,13 @@ from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.registry import PLANNERS, find_planner
 from jaxleas.robots import load_robot
-from jaxleas.types import GuidePath
+from jaxleas.types import Ending, GuidePath
 
+_OF_GUIDE: dict[Ending | None, str] = {
+    "reached": "; the guide path reaches its goal",
+    "invalid": "; the guide path itself ends invalid",
+    "stopped": "; the guide path itself stops before its goal",
+}
 FOR_PICTURE = 10.0
 """Time limit for drawing how far a failed plan could go [s]."""
 
@@ -16,7 +21,7 @@ FOR_PICTURE = 10.0
 def report_plan(
     answer: ContactPlan, asked: ContactProblem | AskedGuide, out: Path, picture: Path | None
 ) -> ContactPlan:
-    """Write a plan, draw it, and print what came of it."""
+    """Write a plan, draw it, and print what came of it, and of the guide path that it follows."""
     write_plan(out, answer)
     if isinstance(asked, ContactProblem):
         if picture is not None:
@@ -26,7 +31,7 @@ def report_plan(
         if picture is not None:
             draw_along_guide(picture, answer, asked)
         words = describe_along_guide(asked.guide, answer)
-    print(f"{words}\nwritten to {out}")
+    print(f"{words}{_OF_GUIDE.get(answer.guide_ended, '')}\nwritten to {out}")
     return answer
 
 

@@ -18,8 +18,16 @@ from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.robots import Robot
 from jaxleas.terrain import Scene
-from jaxleas.types import GuidePath, InputError
+from jaxleas.types import Cause, GuidePath, InputError
 
+CAUSE_OF_ENDING: dict[str, Cause] = {
+    "trunk": "collision",
+    "no_start": "no_start",
+    "no_contact": "no_contact",
+    "repositions": "repositions",
+    "time_limit": "time_limit",
+}
+"""The cause of a failure, for each ending of a plan but "reached"."""
 MOST_BEYOND = 1.0
 """A root further than this from the scene's surfaces cannot stand on any of them [m]."""
 
@@ -96,6 +104,7 @@ def contact_plan(found: SamplingPlan, feet: Sequence[str], gap: float) -> Contac
         robustness=tuple(found.robustness.tolist()),
         postures=postures,
         gap=gap,
+        cause=CAUSE_OF_ENDING.get(found.ending),
     )
 
 

@@ -2,21 +2,12 @@
 
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
 from jaxleas.contacts.plan import ContactPlan
-from jaxleas.contacts.plan_sampling import plan_sampling
+from jaxleas.contacts.plan_sampling import CAUSE_OF_ENDING, plan_sampling
 from jaxleas.contacts.planner import AskedGuide, AskedGuides, Grain, Planner, mean_step
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sampling import SamplingPlan, SamplingSettings, plan_over
 from jaxleas.robots import load_robot
-from jaxleas.types import Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
-
-CAUSE_OF_ENDING: dict[str, Cause] = {
-    "trunk": "collision",
-    "no_start": "no_start",
-    "no_contact": "no_contact",
-    "repositions": "repositions",
-    "time_limit": "time_limit",
-}
-"""The cause of a verdict, for each ending of a plan but "reached"."""
+from jaxleas.types import GuidePath, PathProgress, PlannerMeasures, Verdict
 
 
 class Sampling(Planner):

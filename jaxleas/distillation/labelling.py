@@ -80,7 +80,8 @@ def label_round(
             chosen = [paths[row] for row in np.flatnonzero(walks.map_index == number)]
             cut: list[Reason] = ["stopped"] * len(chosen)
             write_scene(folder.labels / f"scene_{number:04d}.json", ground.scenes[number])
-            write_guide_paths(folder.labels / f"guides_{number:04d}.npz", chosen, cut)
+            guides = folder.labels / f"guides_{number:04d}.npz"
+            write_guide_paths(guides, chosen, cut, robot=ground.env.config.robot)
         write_json(folder.labels / "chosen.json", {"guides": len(paths), "seed": collection.seed})
         files = sorted(folder.labels.glob("guides_*.npz"))
     shards = [

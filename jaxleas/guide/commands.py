@@ -70,7 +70,7 @@ def rollout(
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
-    write_guide_paths(out, guide_paths, reasons)
+    write_guide_paths(out, guide_paths, reasons, robot=config.robot)
     if picture is not None:
         draw_guide_paths(picture, ground, guide_paths, reasons, asked)
     count = Counter(reasons)

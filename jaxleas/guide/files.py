@@ -9,8 +9,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from jaxleas.files import read_json, read_npz, require_version_array, write_npz
+from jaxleas.robots import RecordedRobot
 from jaxleas.terrain import HeightMap
-from jaxleas.types import GuidePath, InputError, Query
+from jaxleas.types import Ending, GuidePath, InputError, Query, ending_of
 
 Reason = Literal["reached", "invalid", "stopped"]
 
@@ -36,10 +37,18 @@ class GuidePathFile:
     Attributes:
         paths: one guide path for each query.
         reasons: reason why each path ended; empty when the file does not say.
+        robot: robot that walked; None in files from before robots were recorded.
     """
 
     paths: tuple[GuidePath, ...]
     reasons: tuple[Reason, ...]
+    robot: RecordedRobot | None = None
+
+    @property
+    def endings(self) -> tuple[Ending, ...]:
+        """How each path ended, as far as the file says."""
+        said = self.reasons or ("",) * len(self.paths)
+        return tuple(ending_of(path, each) for path, each in zip(self.paths, said, strict=True))
 
 
 def read_queries(path: str | Path) -> list[Query]:
@@ -138,6 +147,7 @@ def write_guide_paths(
     guide_paths: Sequence[GuidePath],
     reasons: Sequence[Reason],
     waypoints: np.ndarray | None = None,
+    robot: str | None = None,
 ) -> None:
     """Write guide paths end to end as .npz, whole or not at all.
 
@@ -146,7 +156,9 @@ def write_guide_paths(
         guide_paths: one guide path for each query.
         reasons: reason why each path ended.
         waypoints: waypoints x and y of a single path, the goal last [m]; not read back.
+        robot: name of the robot that walked, or path of its file; None: it is not recorded.
     """
+    recorded = {} if robot is None else RecordedRobot.of(robot).to_arrays()
     lengths = [len(each) for each in guide_paths]
     write_npz(
         path,
@@ -159,6 +171,7 @@ def write_guide_paths(
         reached=np.array([reason == "reached" for reason in reasons]),
         reason=np.array(reasons, dtype=np.str_),
         version=np.array(VERSION),
+        **recorded,
         **({} if waypoints is None else {"waypoints": np.asarray(waypoints, np.float64)}),
     )
 
@@ -201,4 +214,6 @@ def read_guide_paths(path: str | Path) -> GuidePathFile:
         )
     columns = [np.split(arrays[name], first[1:]) for name in required]
     guide_paths = tuple(GuidePath(*parts) for parts in zip(*columns, strict=True))
-    return GuidePathFile(guide_paths, tuple(reasons.tolist()))
+    return GuidePathFile(
+        guide_paths, tuple(reasons.tolist()), RecordedRobot.from_arrays(arrays, path)
+    )

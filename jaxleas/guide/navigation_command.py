@@ -98,7 +98,7 @@ def navigate(
     navigator = make_navigator(places, method, named.edges, planner, scene)
     found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
     check = None if scene is None else check_exactly(env.robot, scene, found.path)
-    _write(out, found)
+    _write(out, found, env.config.robot)
     if picture is not None:
         draw_navigation(picture, ground, found.path, found.waypoints, goal)
     exactly = "" if check is None else f"; {check}"
@@ -145,10 +145,10 @@ def _steering(
     return env, method.make(env, loaded)
 
 
-def _write(out: Path, found: "Navigation") -> None:
+def _write(out: Path, found: "Navigation", robot: str) -> None:
     from jaxleas.guide.files import write_guide_paths
 
-    write_guide_paths(out, [found.path], [found.reason], found.waypoints)
+    write_guide_paths(out, [found.path], [found.reason], found.waypoints, robot)
 
 
 def _sentence(

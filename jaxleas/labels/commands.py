@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from jaxleas.contacts import DEFAULT_JUDGE, PlannerName, find_planner, settings_from
-from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.types import InputError
+from jaxleas.types import InputError, describe_endings
 
 if TYPE_CHECKING:
     from jaxleas.files import FolderLock
@@ -20,7 +19,7 @@ def label(
     scene: Path,
     out: Path,
     planner: PlannerName = DEFAULT_JUDGE,
-    robot: str = DEFAULT_ROBOT,
+    robot: str | None = None,
     parameters: Sequence[str] | None = None,
     keep_every: int | None = None,
     samples: int | None = None,
@@ -42,7 +41,8 @@ def label(
         scene: scene that they cross, .json; or a mesh in metres, z up.
         out: folder of the verdict files; the same command continues where it was interrupted.
         planner: planner that judges.
-        robot: robot that walks.
+        robot: robot that walks; by default the one that walked the guide paths, or talos where
+            their files do not say.
         parameters: any settings of the planner, such as longest_step=0.3.
         keep_every: plan for every N-th configuration; by default the planner's own number.
         samples: sampling: number of leg configurations in the data base, 25000 by default.
@@ -69,6 +69,7 @@ def label(
     from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
+    from jaxleas.labels.walked import read_walks
     from jaxleas.workers import require_count
 
     given = {
@@ -87,12 +88,14 @@ def label(
     settings = settings_from(find_planner(planner, [planner]), **given)
     if processes is not None:
         require_count(processes)
-    if note := settings.note_for(robot):
-        print(note)
     begun = perf_counter()
+    walked = read_walks(guides, scene, robot)
+    for note in (*walked.notes, settings.note_for(walked.robot)):
+        if note:
+            print(note)
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
-    oracle = Oracle(planner, settings, robot=robot)
+    oracle = Oracle(planner, settings, robot=walked.robot)
     shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
@@ -107,11 +110,12 @@ def label(
     finally:
         team.close()
     seconds = perf_counter() - begun
-    verdicts = [verdict for _, verdict in read_verdicts(out)]
-    good = sum(verdict.success for verdict in verdicts)
-    open_ = sum(not verdict.decided for verdict in verdicts)
+    verdicts = read_verdicts(out)
+    good = [each for each in verdicts if each[1].success]
+    open_ = sum(not verdict.decided for _, verdict in verdicts)
     print(
-        f"{out}: {good} of {len(verdicts)} guide paths succeed with the {planner} planner"
+        f"{out}: {len(good)} of {len(verdicts)} guide paths succeed with the {planner} planner"
+        f"{f' ({describe_endings(walked.endings_of(good))})' if good else ''}"
         f"{f', {open_} undecided' if open_ else ''}; "
         f"{judged} judged now in {seconds:.1f} s, {before} before"
     )

@@ -7,6 +7,7 @@ from jaxleas.guide import read_guide_paths
 from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import judge
 from jaxleas.labels.shards import Asked, Shard, write_shard
+from jaxleas.robots import walker_of
 from jaxleas.terrain import load_scene
 from jaxleas.types import InputError
 from jaxleas.workers import Workers
@@ -25,7 +26,8 @@ def plan_shards(
         a_shard: number of guide paths per shard; a number that suits the planner if None.
 
     Raises:
-        InputError: a file cannot be used, two have the same name, or the settings do not fit.
+        InputError: a file cannot be used, two have the same name, a path is another
+            robot's, or the settings do not fit.
     """
     planner, settings = oracle.find()
     size = a_shard or planner.grain.shard
@@ -36,7 +38,9 @@ def plan_shards(
         raise InputError(f"two guide path files are called {twice[0]}: give each its own name")
     shards = []
     for path in guides:
-        count = len(read_guide_paths(path).paths)
+        file = read_guide_paths(path)
+        walker_of(file.robot, oracle.robot, path)
+        count = len(file.paths)
         asked = Asked(path, scene, oracle.planner, settings, oracle.robot)
         provenance = asked.provenance()
         for first in range(0, count, size):

@@ -9,6 +9,7 @@ from .effector import LIMB_OF_FOOT as LIMB_OF_FOOT
 from .effector import Effector as Effector
 from .files import read_robot as read_robot
 from .files import write_robot as write_robot
+from .heights import height_complaint as height_complaint
 from .leg_kinds import ALL_DIRECTIONS as ALL_DIRECTIONS
 from .legs import Legs as Legs
 from .legs import legs_of as legs_of
@@ -17,6 +18,9 @@ from .limb_model import Capsule as Capsule
 from .limb_model import LimbModel as LimbModel
 from .limb_model import LinkBox as LinkBox
 from .numeric_inverse import numeric_inverse as numeric_inverse
+from .recorded import RecordedRobot as RecordedRobot
+from .recorded import Walker as Walker
+from .recorded import walker_of as walker_of
 from .robot import Limb as Limb
 from .robot import Robot as Robot
 from .talos import load_talos as load_talos

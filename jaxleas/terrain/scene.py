@@ -73,6 +73,18 @@ class Scene:
             if self.who_touches(name) in (who, "both")
         }
 
+    @cached_property
+    def blocking(self) -> Polygons:
+        """The polygons that feet may not touch: walls, ceilings and obstacles."""
+        others = {name: each for name, each in self.surfaces.items() if name not in self.walkable}
+        return others | {f"obstacle {name}": each for name, each in self.obstacles.items()}
+
+    @cached_property
+    def blocking_bounds(self) -> Float[np.ndarray, "P 2 3"]:
+        """Lowest and highest corner of the box around each blocking polygon [m]."""
+        boxes = [(each.min(axis=0), each.max(axis=0)) for each in self.blocking.values()]
+        return np.array(boxes, np.float64).reshape(-1, 2, 3)
+
     @property
     def polygons(self) -> list[Float[np.ndarray, "V 3"]]:
         """All polygons that can carry or block, surfaces first."""

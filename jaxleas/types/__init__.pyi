@@ -1,3 +1,7 @@
+from .endings import ENDINGS as ENDINGS
+from .endings import Ending as Ending
+from .endings import describe_endings as describe_endings
+from .endings import ending_of as ending_of
 from .errors import InputError as InputError
 from .errors import JaxleasError as JaxleasError
 from .errors import OwnCodeError as OwnCodeError

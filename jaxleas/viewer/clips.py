@@ -1,6 +1,6 @@
 """Clips to play back: guide paths, and contact plans with the problems they solve."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float
 
 from jaxleas.contacts import ContactPlan, ContactProblem, read_plan, read_problem
 from jaxleas.guide import read_guide_paths
+from jaxleas.robots import walker_of
 from jaxleas.types import GuidePath, InputError, RootPose
 from jaxleas.viewer.footholds import Foothold, footholds_of
 
@@ -51,16 +52,21 @@ class Clip:
         return RootPose.from_yaw(position, yaw), bool(self.valid[index])
 
 
-def read_guide_clips(path: Path) -> list[Clip]:
+def read_guide_clips(path: Path, named: str | None = None) -> list[Clip]:
     """Read the guide paths of a file as clips.
 
+    Args:
+        path: file of the guide paths.
+        named: name of the robot to draw, or path of its file, as a person gave it.
+
     Raises:
-        InputError: the file cannot be used.
+        InputError: the file cannot be used, or its paths are another robot's than the named one's.
     """
     file = read_guide_paths(path)
+    robot = None if file.robot is None else walker_of(file.robot, named, path).name
     reasons = file.reasons or [""] * len(file.paths)
     return [
-        guide_clip(f"path {index} {reason}".strip(), each)
+        replace(guide_clip(f"path {index} {reason}".strip(), each), robot=robot)
         for index, (each, reason) in enumerate(zip(file.paths, reasons, strict=True))
     ]
 

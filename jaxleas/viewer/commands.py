@@ -54,7 +54,7 @@ def view(
         plan: a contact plan to play back, .json; with --problem.
         problem: the contact problem that the plan solves, .json.
         robot: name of the robot that is played back, or path of its file; by default the robot that
-            the problem names, or talos: guide paths name none.
+            the guide paths or the problem name, else talos.
         record: write the walk to --goal, or the playback, as one HTML file, and end.
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
@@ -76,7 +76,7 @@ def view(
     for each in policies or ():  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
-    clips = _clips(guide, plan, problem)
+    clips = _clips(guide, plan, problem, robot)
     if robot is not None and not clips:
         raise InputError("--robot is played back with --guide or --plan; a policy has its own")
     drawn = _robot_to_draw(clips, robot) if clips else None
@@ -151,12 +151,14 @@ def _require_moving(
         raise InputError("--record needs something that moves: --policies, --guide or --plan")
 
 
-def _clips(guide: Path | None, plan: Path | None, problem: Path | None) -> "list[Clip]":
+def _clips(
+    guide: Path | None, plan: Path | None, problem: Path | None, robot: str | None
+) -> "list[Clip]":
     if guide is None and plan is None:
         return []  # do not spend a second on importing their readers
     from jaxleas.viewer.clips import read_guide_clips, read_plan_clip
 
-    clips = read_guide_clips(guide) if guide is not None else []
+    clips = read_guide_clips(guide, robot) if guide is not None else []
     if plan is not None and problem is not None:
         clips.append(read_plan_clip(plan, problem))
     return clips

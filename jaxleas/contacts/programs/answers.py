@@ -47,7 +47,7 @@ def certified(
 def late(planner: str, seconds: float, time_limit: float) -> ContactPlan:
     """Return the answer of a planner whose time is over."""
     reason = f"not decided within the time limit of {time_limit:g} s"
-    return ContactPlan(planner, False, "time_limit", reason, seconds=seconds)
+    return ContactPlan(planner, False, "time_limit", reason, seconds=seconds, cause="time_limit")
 
 
 def diagnosed(

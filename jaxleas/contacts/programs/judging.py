@@ -19,6 +19,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.prefix import last_feasible_phase
 from jaxleas.contacts.programs.settings import ProgramSettings
 from jaxleas.contacts.reference import widest_reference
+from jaxleas.contacts.trunk import trunk_collision
 from jaxleas.robots import load_robot
 from jaxleas.terrain import Scene
 from jaxleas.types import NO_MEASURES, Cause, GuidePath, PathProgress, PlannerMeasures, Verdict
@@ -34,7 +35,8 @@ def judge_by_program(
 
     Where there is no plan for the whole path, the last configuration reached is that of the last
     step of the longest prefix with a plan, found by binary search. Standing beside the first
-    configuration already reaches it.
+    configuration already reaches it. Where the trunk touches an obstacle, the path ends there, and
+    only its free part is planned.
 
     Args:
         asked: number of the guide path, scene to walk on, and the guide path.
@@ -47,10 +49,16 @@ def judge_by_program(
     """
     begun = time.perf_counter()
     number, scene, path = asked
+    touched = trunk_collision(load_robot(robot), scene, path)
+    stop = None if touched is None else _Stop("collision", touched.sentence)
+    free = len(path) if touched is None else _free_length(path, settings, touched.index)
+    if not free:
+        return _verdict(_progress(number, path, settings, -1), stop, begun, NO_MEASURES)
     near = _around(robot, scene, path, settings.window)
-    problem, lost = _problem(robot, near, path, settings)
-    stop = None if lost is None else _Stop("no_start" if lost.step < 0 else "no_ground", str(lost))
-    if problem is None or len(path) == 1:
+    problem, lost = _problem(robot, near, path[:free], settings)
+    if lost is not None:
+        stop = _Stop("no_start" if lost.step < 0 else "no_ground", str(lost))
+    if problem is None or free == 1:
         steps = -1 if lost is not None and lost.step < 0 else 0
         return _verdict(_progress(number, path, settings, steps), stop, begun, NO_MEASURES)
     search = _Search(problem, program, begun, settings.time_limit)
@@ -107,6 +115,12 @@ class _Search:
         """Answer one question of the binary search."""
         plan = self.plan(len(prefix))
         return "failed" if plan is None else "optimal" if plan.feasible else "infeasible"
+
+
+def _free_length(path: GuidePath, settings: ProgramSettings, blocked: int) -> int:
+    """Return the number of configurations up to the last kept one before a blocked one."""
+    kept = [0, *kept_configurations(len(path), settings.keep_every)]
+    return max((1 + index for index in kept if index < blocked), default=0)
 
 
 def _problem(

@@ -84,7 +84,8 @@ def plan_mip(
         return late("mip", seconds, time_limit)
     if decision.status == "failed":
         raise PlannerError("the mixed-integer solver gave no answer")
-    plan = ContactPlan("mip", False, "infeasible", "no choice of surfaces works", seconds=seconds)
+    why = "no choice of surfaces works"
+    plan = ContactPlan("mip", False, "infeasible", why, seconds=seconds, cause="infeasible")
     if not diagnose:
         return plan
     judge = lambda prefix: decide(prefix, deadline, formulation).status  # noqa: E731

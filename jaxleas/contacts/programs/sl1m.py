@@ -2,6 +2,7 @@
 
 import math
 import time
+from typing import Any
 
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import AskedGuides, Planner, PlannerError, require_time_limit
@@ -81,7 +82,7 @@ def plan_sl1m(
     deadline = begin + time_limit
     found = attempt(problem, deadline, max_combinations, pruning, weights)
     seconds = time.perf_counter() - begin
-    counts = {"combinations": found.combinations, "undecided": found.undecided}
+    counts: dict[str, Any] = {"combinations": found.combinations, "undecided": found.undecided}
     if found.placement is not None:
         plan = certified("sl1m", problem, found.surfaces, found.placement, seconds)
         return plan.but(**counts)
@@ -90,7 +91,8 @@ def plan_sl1m(
     if found.status == "failed":
         raise PlannerError("the linear-program solver gave no answer")
     status = "infeasible" if found.status == "infeasible" else "not_found"
-    plan = ContactPlan("sl1m", False, status, _sl1m_reason(found), seconds=seconds).but(**counts)
+    plan = ContactPlan("sl1m", False, status, _sl1m_reason(found), seconds=seconds)
+    plan = plan.but(cause=status, **counts)
     if not diagnose:
         return plan
 

@@ -1,0 +1,69 @@
+"""Guide path files that are to be judged: whose paths they hold, and how these ended."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jaxleas.contacts import planned_robot
+from jaxleas.files import digest_of
+from jaxleas.guide import read_guide_paths
+from jaxleas.terrain import load_scene
+from jaxleas.types import Ending, InputError, Verdict
+
+
+@dataclass(frozen=True)
+class Walks:
+    """What guide path files say of their paths, apart from any planner.
+
+    Attributes:
+        robot: name of the robot that walked all of them.
+        notes: lines to print about it.
+        endings: how the paths of each file ended, by the file's SHA-256.
+    """
+
+    robot: str
+    notes: tuple[str, ...]
+    endings: Mapping[str, Sequence[Ending]]
+
+    def endings_of(self, found: Iterable[tuple[Mapping[str, Any], Verdict]]) -> list[Ending]:
+        """Return how the paths of verdicts ended; unknown for files that are not among these.
+
+        Args:
+            found: verdicts, each with its provenance.
+        """
+        known: dict[tuple[str, int], Ending] = {
+            (sha256, path): ending
+            for sha256, endings in self.endings.items()
+            for path, ending in enumerate(endings)
+        }
+        return [
+            known.get((provenance["guides"]["sha256"], verdict.path), "unknown")
+            for provenance, verdict in found
+        ]
+
+
+def read_walks(guides: Sequence[Path], scene: Path, robot: str | None) -> Walks:
+    """Read whose paths the files hold, and how these ended.
+
+    Args:
+        guides: guide path files.
+        scene: file of the scene that they cross.
+        robot: robot that a person named; None where nobody did.
+
+    Raises:
+        InputError: a file cannot be used, or its paths are another robot's than the others'.
+    """
+    crossed, walkers, endings = cache(lambda: load_scene(scene)), [], {}
+    for path in guides:
+        file = read_guide_paths(path)
+        walkers.append(planned_robot(file.robot, robot, file.paths, crossed, path))
+        endings[digest_of(path)] = file.endings
+        if walkers[-1].name != walkers[0].name:
+            raise InputError(
+                f"{guides[0]} is of {walkers[0].name}, and {path} of {walkers[-1].name}: label the"
+                " paths of each robot into a folder of their own"
+            )
+    notes = tuple(dict.fromkeys(each.note for each in walkers if each.note))
+    return Walks(walkers[0].name, notes, endings)
