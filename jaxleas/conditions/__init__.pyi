@@ -1,3 +1,4 @@
+from .catalogue import TITLES as TITLES
 from .catalogue import make_judges as make_judges
 from .collision import Collision as Collision
 from .collision import collision as collision

@@ -1,8 +1,9 @@
 """The conditions by name, and how a configuration's names become conditions."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import jax
@@ -44,6 +45,16 @@ CONDITIONS: Registry[Callable[..., Any]] = Registry(
 """Each, except the surrogate, is called with the robot and the points that are sampled anyway."""
 
 
+TITLES: Mapping[str, str] = MappingProxyType(
+    {
+        "reachability": "reachability R",
+        "strict_reachability": "strict reachability R*",
+        "collision": "collision C",
+    }
+)
+"""What the package's conditions are called in sentences."""
+
+
 @dataclass(frozen=True)
 class Judges:
     """The conditions that end an episode.
@@ -51,10 +62,12 @@ class Judges:
     Attributes:
         condition: condition with the smallest margin of all conditions.
         foresight: condition with memory; None: there is no such condition.
+        named: conditions without memory, by the names that the configuration gives them.
     """
 
     condition: Condition
     foresight: Foresight | None
+    named: Mapping[str, Condition]
 
 
 def make_judges(
@@ -81,7 +94,10 @@ def make_judges(
     """
     made = [_make(each, robot, candidates, env, allow) for each in named]
     foresights = [each for each in made if _foresees(each)]
-    conditions = [each for each in made if not _foresees(each)]
+    by_name = {
+        str(name): each for name, each in zip(named, made, strict=True) if not _foresees(each)
+    }
+    conditions = list(by_name.values())
     if len(foresights) > 1:
         raise InputError(f"{KEY}: an episode can follow one condition with memory: leave one out")
     if not conditions:
@@ -89,6 +105,7 @@ def make_judges(
     return Judges(
         condition=all_of(*conditions, order=candidates),
         foresight=foresights[0] if foresights else None,
+        named=by_name,
     )
 
 

@@ -19,7 +19,7 @@ from jaxleas.types import InputError
 
 Polygons = Iterable[Float[np.ndarray, "V 3"]]
 
-_ROOTS_AT_ONCE = 1024  # bounds the memory of a table of roots x polygons
+_ROOTS_AT_ONCE = 256  # bounds the memory of a table of roots x polygons
 _PAIRS_AT_ONCE = 8192  # bounds the memory of a table of pairs x vertices x faces
 
 
@@ -142,14 +142,20 @@ def _near_pairs(
     low, high = packed.min(axis=1), packed.max(axis=1)
     for first in range(0, len(chosen), _ROOTS_AT_ONCE):
         roots = chosen[first : first + _ROOTS_AT_ONCE]
-        near = np.ones((len(roots), len(packed)), dtype=bool)
+        at = position[roots]
+        # Roots that follow one another lie close together: few polygons are near any of them.
+        some = (high >= at.min(axis=0) + below) & (low <= at.max(axis=0) + above)
+        around = np.flatnonzero(some.all(axis=1))
+        near = np.ones((len(roots), len(around)), dtype=bool)
         for axis in range(3):
-            at = position[roots, axis, None]
-            near &= (high[:, axis] >= at + below[axis]) & (low[:, axis] <= at + above[axis])
-        rows, faces = np.nonzero(near)
+            here = at[:, axis, None]
+            near &= high[around, axis] >= here + below[axis]
+            near &= low[around, axis] <= here + above[axis]
+        rows, columns = np.nonzero(near)
+        faces = around[columns]
         for start in range(0, len(rows), _PAIRS_AT_ONCE):
-            some = slice(start, start + _PAIRS_AT_ONCE)
-            yield roots[rows[some]], faces[some]
+            part = slice(start, start + _PAIRS_AT_ONCE)
+            yield roots[rows[part]], faces[part]
 
 
 def _to_root(vertices: np.ndarray, position: np.ndarray, yaw: np.ndarray) -> np.ndarray:

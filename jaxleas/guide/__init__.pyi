@@ -4,8 +4,6 @@ from .double_integrator import connect as connect
 from .files import GuidePathFile as GuidePathFile
 from .files import Reason as Reason
 from .files import read_guide_paths as read_guide_paths
-from .files import read_queries as read_queries
-from .files import require_on_terrain as require_on_terrain
 from .files import write_guide_paths as write_guide_paths
 from .leas import Leas as Leas
 from .leas import leas as leas
@@ -17,6 +15,8 @@ from .onnx_policy import onnx_policy_from_bytes as onnx_policy_from_bytes
 from .onnx_policy import read_onnx_policy as read_onnx_policy
 from .picture import PATH as PATH
 from .places import Places as Places
+from .query_file import read_queries as read_queries
+from .query_file import require_on_terrain as require_on_terrain
 from .rb_kino import RbKino as RbKino
 from .rb_kino import rb_kino as rb_kino
 from .rb_lin import RbLin as RbLin

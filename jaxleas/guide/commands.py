@@ -1,6 +1,5 @@
 """The function behind `jaxleas rollout`."""
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +31,7 @@ def rollout(
     steps: int = 800,
     steering: SteeringName = "leas",
     picture: Path | None = None,
+    exact: bool | None = None,
     reading: Reading = READING,
     allow: Allow = (),
 ) -> None:
@@ -46,15 +46,20 @@ def rollout(
         steering: steering method: leas is the policy; kino, RB-Kino, and lin, RB-Lin, know no
             terrain.
         picture: draw the paths from above (.png, .svg, .pdf).
+        exact: judge the paths once more, exactly, on the polygons of the terrain: a path ends where
+            that refuses it; by default wherever the terrain has polygons.
         reading: what the terrain file does not state itself.
         allow: conditions of your own that the policy was trained under, to walk it under them; by
             default R* and C.
     """
     from jaxleas.envs.steering import SteeringEnv
+    from jaxleas.guide.failures import failures_on_map
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.picture import draw_guide_paths, require_picture
+    from jaxleas.guide.reconfirming import Walked, polygons_of, reconfirm_walks
     from jaxleas.guide.rollout import paths
+    from jaxleas.guide.rollout_report import describe_walks, failure_lines
     from jaxleas.terrain import import_terrain
 
     asked = read_queries(queries)
@@ -64,21 +69,24 @@ def rollout(
     walker = load_policy(policy, allow)
     ground = import_terrain(terrain, reading)
     require_on_terrain(queries, asked, ground)
+    scene = polygons_of(terrain, reading, exact)
     env = SteeringEnv(walker.config, allow=allow)
     config = env.config
     method = find_method(steering).make(env, walker)
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
-    write_guide_paths(out, guide_paths, reasons, robot=config.robot)
+    failures = failures_on_map(env, ground, guide_paths, reasons)
+    found = Walked(tuple(guide_paths), tuple(reasons), tuple(failures))
+    if scene is not None:
+        found = reconfirm_walks(env.robot, scene, env.conditions, found)
+    write_guide_paths(out, found.paths, found.reasons, robot=config.robot, failures=found.failures)
     if picture is not None:
-        draw_guide_paths(picture, ground, guide_paths, reasons, asked)
-    count = Counter(reasons)
-    print(
-        f"{out}: of {len(asked)} queries {count['reached']} reached their goal,"
-        f" {count['invalid']} ended invalid, {count['stopped']} stopped before it"
-        + (f"; drawn in {picture}" if picture is not None else "")
-    )
+        draw_guide_paths(picture, ground, found.paths, found.reasons, asked)
+    drawn = f"; drawn in {picture}" if picture is not None else ""
+    print(f"{out}: {describe_walks(found, exactly=scene is not None)}{drawn}")
+    for line in failure_lines(found, out):
+        print(line)
 
 
 def walk_queries(

@@ -42,7 +42,9 @@ def test_rb_lin_reaches_what_lies_on_level_ground(files, capsys):
     rollout(**files, steering="lin", picture=picture)
     said = capsys.readouterr().out
     assert "of 4 queries 2 reached their goal, 2 ended invalid, 0 stopped" in said
-    assert said.count("\n") == 1
+    third_failed, fourth_failed = said.splitlines()[1:]
+    assert third_failed.startswith("query 2: strict reachability R* fails at (1.00, 1.00), 0.0 s: ")
+    assert "query 3: strict reachability R* fails at (4." in fourth_failed
     walked = read_guide_paths(files["out"])
     assert walked.reasons == ("reached", "reached", "invalid", "invalid")
     first, second, third, fourth = walked.paths

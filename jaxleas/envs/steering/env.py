@@ -1,6 +1,6 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import jax.numpy as jnp
@@ -51,6 +51,7 @@ class SteeringEnv:
         robot: robot that walks.
         points_in_root: points at which the local terrain is sampled [m].
         condition: condition on local terrain and motion; an episode ends where it fails.
+        conditions: conditions that together are `condition`, by name.
         foresight: condition with memory, such as a surrogate of a contact planner; an episode also
             ends where it fails. None: there is no such condition.
     """
@@ -84,15 +85,21 @@ class SteeringEnv:
         # Points of the observation: places kept for the motion, then its grid.
         self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
         sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
+        named: Mapping[str, Condition | Judge] = {} if condition is None else {"own": condition}
         if condition is None:
             judges = make_judges(config.conditions, self.robot, sampled, config, allow)
             condition, foresight = judges.condition, foresight or judges.foresight
+            named = judges.named
         self.foresight = foresight
         # Points that the conditions read: only a few of all.
         self._judge = with_points(condition, sampled)
         self._judged = np.asarray(self._judge.points_in_root, np.float64)
         self.points_in_root = extended(sampled, self._judged)
         self.condition = read_from(self.points_in_root, self._judge)
+        self.conditions = {
+            name: read_from(self.points_in_root, with_points(each, sampled))
+            for name, each in named.items()
+        }
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
