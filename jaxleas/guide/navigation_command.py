@@ -64,6 +64,7 @@ def navigate(
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
     """
+    from jaxleas.guide.cut_off import require_not_cut_off
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.place_refusal import require_valid
     from jaxleas.guide.roadmaps import Budget, Places
@@ -92,6 +93,7 @@ def navigate(
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
     require_valid(places, "--to", goal, None)
+    require_not_cut_off(places, start, goal)
     scene = scene_of(terrain, reading)
     if scene is not None:
         require_exact_start(places, scene, motion)

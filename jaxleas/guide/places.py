@@ -66,9 +66,16 @@ class Places:
         self, places: Float[np.ndarray, "N 2"], yaw: Float[np.ndarray, " N"]
     ) -> dict[str, Float[np.ndarray, " N"]]:
         """Return the margins [m] of R*, of C and of the environment's condition, by name."""
-        motion = self.standing(places, yaw)
+        return self.margins_of(self.standing(places, yaw))
+
+    def margins_of(self, motion: RootMotion) -> dict[str, Float[np.ndarray, " N"]]:
+        """Return the margins [m] of R*, of C and of the environment's condition, by name.
+
+        Args:
+            motion: root motions at any height, of NumPy arrays.
+        """
         parts = []
-        for first in range(0, len(places), _AT_ONCE):
+        for first in range(0, len(motion.yaw), _AT_ONCE):
             some = jax.tree.map(lambda leaf, at=first: leaf[at : at + _AT_ONCE], motion)
             count = len(some.yaw)
             size = _AT_ONCE if count > _FEW else _FEW  # two compiled sizes are enough
