@@ -59,7 +59,7 @@ def rollout(
     from jaxleas.guide.picture import draw_guide_paths, require_picture
     from jaxleas.guide.reconfirming import Walked, polygons_of, reconfirm_walks
     from jaxleas.guide.rollout import paths
-    from jaxleas.guide.rollout_report import describe_walks, failure_lines
+    from jaxleas.guide.rollout_report import describe_walks, failure_lines, goals_off_the_map
     from jaxleas.terrain import import_terrain
 
     asked = read_queries(queries)
@@ -85,7 +85,7 @@ def rollout(
         draw_guide_paths(picture, ground, found.paths, found.reasons, asked)
     drawn = f"; drawn in {picture}" if picture is not None else ""
     print(f"{out}: {describe_walks(found, exactly=scene is not None)}{drawn}")
-    for line in failure_lines(found, out):
+    for line in (*goals_off_the_map(asked, ground), *failure_lines(found, out)):
         print(line)
 
 

@@ -1,12 +1,16 @@
 """What `jaxleas rollout` says of its walks."""
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from jaxleas.guide.reconfirming import Walked
+from jaxleas.terrain import HeightMap
+from jaxleas.types import Query
 
 MOST_LINES = 20
 """Number of failures that are printed; the file holds all of them."""
+MOST_NUMBERS = 5
 
 
 def describe_walks(walked: Walked, exactly: bool) -> str:
@@ -43,3 +47,25 @@ def failure_lines(walked: Walked, out: Path) -> list[str]:
     ]
     more = len(lines) - MOST_LINES
     return [*lines[:MOST_LINES], *([f"and {more} more: 'failed' in {out}"] if more > 0 else [])]
+
+
+def goals_off_the_map(queries: Sequence[Query], terrain: HeightMap) -> list[str]:
+    """Return a line on the goals that no path can reach, as they lie off the map; or no line.
+
+    Args:
+        queries: queries that were walked.
+        terrain: height map that was walked on.
+    """
+    x_min, x_max, y_min, y_max = terrain.extent
+    off = [
+        number
+        for number, query in enumerate(queries)
+        if not (x_min <= query.goal[0] <= x_max and y_min <= query.goal[1] <= y_max)
+    ]
+    if not off:
+        return []
+    first = ", ".join(map(str, off[:MOST_NUMBERS])) + (", ..." if len(off) > MOST_NUMBERS else "")
+    return [
+        f"off the map, which spans x in [{x_min:g}, {x_max:g}] and y in [{y_min:g}, {y_max:g}] m,"
+        f" lie the goals of {len(off)} queries: {first}"
+    ]

@@ -42,7 +42,9 @@ def test_rb_lin_reaches_what_lies_on_level_ground(files, capsys):
     rollout(**files, steering="lin", picture=picture)
     said = capsys.readouterr().out
     assert "of 4 queries 2 reached their goal, 2 ended invalid, 0 stopped" in said
-    third_failed, fourth_failed = said.splitlines()[1:]
+    off_the_map, third_failed, fourth_failed = said.splitlines()[1:]
+    assert off_the_map.startswith("off the map, which spans x in [-4")
+    assert off_the_map.endswith("lie the goals of 1 queries: 3")
     assert third_failed.startswith("query 2: strict reachability R* fails at (1.00, 1.00), 0.0 s: ")
     assert "query 3: strict reachability R* fails at (4." in fourth_failed
     walked = read_guide_paths(files["out"])
