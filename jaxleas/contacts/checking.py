@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.guide_from_problem import guide_from_problem, scene_of_problem
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.plan_report import draw_along_guide
 from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
+from jaxleas.contacts.trunk import trunk_collision
 from jaxleas.robots import load_robot
 from jaxleas.types import InputError, JaxleasError
 
@@ -37,6 +39,54 @@ def followed_by(
         f"{plan} holds postures along a guide path: it is checked against its guide and scene,"
         " with --guide GUIDE.npz --scene SCENE.json, or against a PROBLEM.json"
     )
+
+
+def check_footholds(plan: Path, read: ContactPlan, problem: Path, asked: ContactProblem) -> str:
+    """Certify a plan of footholds, and return its tightest constraint in words.
+
+    Args:
+        plan: file of the plan, for messages.
+        read: the plan.
+        problem: file of the problem, for messages.
+        asked: the problem that it answers.
+
+    Raises:
+        NotCertifiedError: the plan violates a constraint.
+    """
+    worst = certify(asked, read)
+    verdict = f"{worst.constraint}, step {worst.step}: {worst.metres:.3g} m"
+    if not worst.certified:
+        raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
+    return verdict
+
+
+def check_trunk(
+    plan: Path, guide: Path | None, scene: Path | None, query: int, robot: str | None
+) -> str:
+    """Return what is certain of the trunk of a plan of footholds alone, as a clause.
+
+    Args:
+        plan: file of the plan, for messages.
+        guide: file of the guide path that it follows, if known.
+        scene: file of the scene that it crosses, if known.
+        query: number of the path in the guide's file.
+        robot: robot that a person named, if any.
+
+    Raises:
+        InputError: one of guide and scene is missing.
+        NotCertifiedError: the trunk touches an obstacle.
+    """
+    from jaxleas.contacts.guide_robot import read_asked
+
+    if guide is None and scene is None:
+        return "obstacles of the trunk were not looked at, which takes --guide and --scene"
+    if guide is None or scene is None:
+        raise InputError("--guide and --scene belong together: both are needed to check the trunk")
+    asked, _ = read_asked(guide, query, scene, robot)
+    touched = trunk_collision(load_robot(asked.robot), asked.scene, asked.guide)
+    if touched is not None:
+        raise NotCertifiedError(f"{plan} is no plan for {guide} on {scene}: {touched.sentence}")
+    return "the trunk touches nothing along the guide path"
 
 
 def along_roots(problem: ContactProblem, robot: str | None = None) -> AskedGuide:

@@ -4,8 +4,14 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.contacts.along_guide import plan_along
-from jaxleas.contacts.certificate import certify
-from jaxleas.contacts.checking import NotCertifiedError, along_roots, check_postures, followed_by
+from jaxleas.contacts.checking import (
+    NotCertifiedError,
+    along_roots,
+    check_footholds,
+    check_postures,
+    check_trunk,
+    followed_by,
+)
 from jaxleas.contacts.from_guide import Candidates, Stepping, problem_from_guide
 from jaxleas.contacts.models import model_note
 from jaxleas.contacts.plan import ContactPlan, read_plan
@@ -17,6 +23,8 @@ from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
 from jaxleas.types import InputError
+
+__all__ = ["NotCertifiedError", "check", "contacts", "plan"]
 
 
 def plan(
@@ -74,10 +82,11 @@ def check(
     Args:
         plan: the contact plan, .json.
         problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
-        guide: the guide path it follows, .npz (sampling).
-        scene: the scene it crosses, .json or a mesh (sampling).
+        guide: the guide path it follows, .npz; of any planner but sampling, the trunk
+            is checked.
+        scene: the scene it crosses, .json or a mesh; with --guide.
         query: number of the path in the guide's file.
-        robot: robot of a plan that follows a guide (sampling); by default the one that walked the
+        robot: robot of a plan that follows a guide; by default the one that walked the
             guide path, or talos where its file does not say.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
     """
@@ -94,13 +103,13 @@ def check(
             f" jaxleas check {plan} PROBLEM.json"
         )
     asked = read_problem(problem)
-    worst = certify(asked, read)
     if picture is not None:
         draw(picture, asked, read)
-    verdict = f"{worst.constraint}, step {worst.step}: {worst.metres:.3g} m"
-    if not worst.certified:
-        raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
-    print(f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {verdict})")
+    tightest = check_footholds(plan, read, problem, asked)
+    trunk = check_trunk(plan, guide, scene, query, robot)
+    print(
+        f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {tightest}); {trunk}"
+    )
 
 
 def contacts(

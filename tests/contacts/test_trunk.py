@@ -1,16 +1,20 @@
 """The trunk along a guide path, which MIP and SL1M check before they place feet."""
 
+import json
+
 import numpy as np
 import pytest
 
 from jaxleas import cli
 from jaxleas.conditions import exact_collision
 from jaxleas.contacts import read_plan
+from jaxleas.contacts.checking import NotCertifiedError
 from jaxleas.contacts.trunk import trunk_collision
 from jaxleas.guide import write_guide_paths
 from jaxleas.labels import judge
 from jaxleas.robots import load_robot, load_talos
-from jaxleas.terrain import Scene, write_scene
+from jaxleas.terrain import Scene, load_scene, write_scene
+from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, floor, stairs, straight, wall
 
 BOTH = pytest.mark.parametrize("planner", ["mip", "sl1m"])
@@ -107,12 +111,43 @@ def test_contacts_say_it_with_a_cause(tmp_path, capsys, monkeypatch) -> None:
         assert (plan.feasible, plan.cause, plan.guide_ended) == (False, "collision", "reached")
         assert (plan.last_feasible_phase or 0) > 1
     capsys.readouterr()
-    cli.run(["contacts", "walks.npz", "--scene", "scene.json", "--out", "p.json", "--query", "1"])
+    line = "contacts walks.npz --scene scene.json --out p.json --query 1 --problem problem.json"
+    cli.run(line.split())
     assert read_plan("p.json").feasible
     assert "reaches its goal" in capsys.readouterr().out
+
+
+def test_check_judges_the_trunk_where_it_is_given_the_path(tmp_path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_scene("scene.json", Scene(flat().surfaces, {"sheet": SHEET}))
+    paths = [straight(1.0), straight(2.5)]
+    write_guide_paths("walks.npz", paths, ["reached", "reached"], robot="talos")
+    line = "contacts walks.npz --scene scene.json --out p.json --problem problem.json"
+    cli.run(line.split())
+    capsys.readouterr()
+    check = "check p.json problem.json"
+    cli.run(check.split())
+    assert "obstacles of the trunk were not looked at" in capsys.readouterr().out
+    cli.run(f"{check} --guide walks.npz --scene scene.json".split())
+    assert "the trunk touches nothing along the guide path" in capsys.readouterr().out
+    with pytest.raises(NotCertifiedError, match="the trunk touches 'obstacle sheet'"):
+        cli.run(f"{check} --guide walks.npz --scene scene.json --query 1".split())
+    with pytest.raises(InputError, match="--guide and --scene belong together"):
+        cli.run(f"{check} --guide walks.npz".split())
 
 
 def test_other_robots_have_their_own_trunk() -> None:
     low = Scene({"floor": floor(-2, 8, -2, 2)}, {"beam": floor(1.5, 1.7, -1, 1, 1.35)})
     assert trunk_collision(load_talos(), low, straight(2.0, height=0.95)) is not None
     assert trunk_collision(load_robot("g1"), low, straight(2.0, height=0.70)) is None
+
+
+def test_a_wall_without_thickness_of_a_mesh_stands_in_the_way(shared) -> None:
+    mesh = shared / "cases" / "sheet_wall.stl"
+    if not mesh.is_file():
+        pytest.skip("needs ../shared/cases")
+    (query,) = json.loads((mesh.parent / "q_wall.json").read_text())
+    x, y, z = query["position"]
+    path = straight(abs(query["goal"][0] - x), height=z, y=y, start=min(x, query["goal"][0]))
+    (verdict,) = judge("mip", load_scene(mesh), [path])
+    assert (verdict.decided, verdict.success, verdict.cause) == (True, False, "collision")
