@@ -1,5 +1,7 @@
 """Clips to play back: guide paths, and contact plans with the problems they solve."""
 
+import logging
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -8,10 +10,12 @@ from jaxtyping import Bool, Float
 
 from jaxleas.contacts import ContactPlan, ContactProblem, read_plan, read_problem
 from jaxleas.guide import read_guide_paths
-from jaxleas.robots import walker_of
-from jaxleas.types import GuidePath, InputError, RootPose
+from jaxleas.robots import Robot, height_complaint, walker_of
+from jaxleas.terrain import HeightMap
+from jaxleas.types import GuidePath, InputError, RootPose, is_ground
 from jaxleas.viewer.footholds import Foothold, footholds_of
 
+_LOG = logging.getLogger("jaxleas")
 SECONDS_PER_STEP = 1.0  # duration of a step: a contact plan has no times
 
 
@@ -77,6 +81,23 @@ def guide_clip(name: str, path: GuidePath) -> Clip:
     if np.any(np.diff(time) <= 0.0):
         raise InputError(f"{name}: its times do not ascend")
     return Clip(name, time, path.position, np.unwrap(path.yaw), path.valid)
+
+
+def warn_of_height(clips: Sequence[Clip], drawn: Robot, ground: HeightMap) -> None:
+    """Warn of paths of nobody known that the drawn robot cannot have walked.
+
+    Args:
+        clips: clips to be shown together.
+        drawn: robot that is drawn for want of another.
+        ground: terrain that the paths cross.
+    """
+    roots = [each.position for each in clips if each.robot is None and len(each.position)]
+    for position in roots:
+        below = ground.height_at(position[:, :2].astype(np.float64))
+        known = is_ground(below)
+        if problem := height_complaint(drawn, position[known, 2] - below[known]):
+            _LOG.warning("%s is drawn, but %s", drawn.name, problem)
+            return
 
 
 def read_plan_clip(plan: Path, problem: Path) -> Clip:

@@ -81,6 +81,8 @@ def view(
         raise InputError("--robot is played back with --guide or --plan; a policy has its own")
     drawn = _robot_to_draw(clips, robot) if clips else None
     ground = import_terrain(terrain, reading)
+    if drawn is not None and robot is None:
+        _warn_of_height(clips, drawn, ground)
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
@@ -180,6 +182,12 @@ def _robot_to_draw(clips: "list[Clip]", named: str | None) -> "Robot":
     from jaxleas.viewer.playback import robot_to_draw
 
     return robot_to_draw(clips, named)
+
+
+def _warn_of_height(clips: "list[Clip]", drawn: "Robot", ground: "HeightMap") -> None:
+    from jaxleas.viewer.clips import warn_of_height
+
+    warn_of_height(clips, drawn, ground)
 
 
 def _play_back(

@@ -7,8 +7,16 @@ from jaxleas.contacts.plan import ContactPlan, write_plan
 from jaxleas.contacts.problem_file import write_problem
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.guide import write_guide_paths
+from jaxleas.robots import load_talos
+from jaxleas.terrain import HeightMap
 from jaxleas.types import GuidePath, InputError
-from jaxleas.viewer.clips import guide_clip, plan_clip, read_guide_clips, read_plan_clip
+from jaxleas.viewer.clips import (
+    guide_clip,
+    plan_clip,
+    read_guide_clips,
+    read_plan_clip,
+    warn_of_height,
+)
 from jaxleas.viewer.playback import robot_to_draw
 from tests.contacts.worlds import problem, stones
 
@@ -36,6 +44,24 @@ def test_a_file_of_paths_becomes_one_clip_each(tmp_path):
     clips = read_guide_clips(tmp_path / "paths.npz")
     assert [clip.name for clip in clips] == ["path 0 invalid", "path 1 reached"]
     assert [len(clip.time) for clip in clips] == [5, 3]
+
+
+def test_guide_paths_name_the_robot_that_is_drawn(tmp_path):
+    file = tmp_path / "paths.npz"
+    write_guide_paths(file, [straight()], ["invalid"], robot="g1")
+    assert robot_to_draw(read_guide_clips(file)).name == "g1"
+    with pytest.raises(InputError, match=r"walked by robot 'g1', with its root 0\.7 m above"):
+        read_guide_clips(file, "talos")
+
+
+def test_a_path_at_another_height_is_drawn_with_a_warning(caplog):
+    ground = HeightMap(np.zeros((50, 50), np.float32), 0.1, (-1.0, -1.0))
+    path = straight()
+    warn_of_height([guide_clip("path", path)], load_talos(), ground)
+    assert not caplog.text
+    path.position[:, 2] = 0.6
+    warn_of_height([guide_clip("path", path)], load_talos(), ground)
+    assert "talos is drawn, but its root is 0.60 m above the ground" in caplog.text
 
 
 def test_a_plan_is_played_a_phase_a_second_and_feet_stand_until_they_move():
