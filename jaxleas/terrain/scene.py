@@ -77,7 +77,9 @@ class Scene:
     def blocking(self) -> Polygons:
         """The polygons that feet may not touch: walls, ceilings and obstacles."""
         others = {name: each for name, each in self.surfaces.items() if name not in self.walkable}
-        return others | {f"obstacle {name}": each for name, each in self.obstacles.items()}
+        for name, each in self.obstacles.items():
+            others[f"obstacle {name}" if name in self.surfaces else name] = each
+        return others
 
     @cached_property
     def blocking_bounds(self) -> Float[np.ndarray, "P 2 3"]:

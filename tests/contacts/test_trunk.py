@@ -47,7 +47,7 @@ def test_the_first_collision_is_that_of_a_slow_twin(seed) -> None:
     if found is not None and expected is not None:
         assert abs(found.index - expected) <= 1  # a configuration is 2 cm, the twin's points 1.7 cm
         assert not exact_collision(robot, [SHEET], path.position, path.yaw)[found.index]
-        assert "the trunk touches 'obstacle sheet' at configuration" in found.sentence
+        assert "the trunk touches 'sheet' at configuration" in found.sentence
 
 
 @BOTH
@@ -130,7 +130,7 @@ def test_check_judges_the_trunk_where_it_is_given_the_path(tmp_path, capsys, mon
     assert "obstacles of the trunk were not looked at" in capsys.readouterr().out
     cli.run(f"{check} --guide walks.npz --scene scene.json".split())
     assert "the trunk touches nothing along the guide path" in capsys.readouterr().out
-    with pytest.raises(NotCertifiedError, match="the trunk touches 'obstacle sheet'"):
+    with pytest.raises(NotCertifiedError, match="the trunk touches 'sheet'"):
         cli.run(f"{check} --guide walks.npz --scene scene.json --query 1".split())
     with pytest.raises(InputError, match="--guide and --scene belong together"):
         cli.run(f"{check} --guide walks.npz".split())
