@@ -12,6 +12,7 @@ from tests.robustness.hostile_files.kinds import Kind, kind_of
 
 def guide_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.guide_file import read_guide_path
+    from jaxleas.guide.failures import Failure
     from jaxleas.guide.files import read_queries, write_guide_paths
     from jaxleas.labels.label import plan_shards
     from jaxleas.labels.oracle import Oracle
@@ -30,7 +31,14 @@ def guide_kinds(folder: Path) -> list[Kind]:
         velocity=np.zeros((rows, 3)),
         valid=np.ones(rows, bool),
     )
-    write_guide_paths(folder / "guides.npz", [path, path], ["reached", "stopped"])
+    failures = [None, Failure("collision", -0.1)]
+    write_guide_paths(
+        folder / "guides.npz",
+        [path, path],
+        ["reached", "invalid"],
+        robot="talos",
+        failures=failures,
+    )
     scene, guides = folder / "scene.json", folder / "guides.npz"
     (shard,) = plan_shards([guides], scene, Oracle("sampling", robot="talos"), folder / "labels")
     verdict = Verdict(
