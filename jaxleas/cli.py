@@ -19,10 +19,10 @@ from jaxleas.cli_options import add_options, arguments_of
 # Command -> (the room's module, its function, its purpose).
 COMMANDS = {
     "terrain show": ("jaxleas.terrain.commands", "show", "draw a terrain as a picture"),
-    "terrain import": (
+    "terrain convert": (
         "jaxleas.terrain.commands",
         "convert",
-        "make a height map of a mesh or image",
+        "write a terrain as another kind of file",
     ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
@@ -68,6 +68,8 @@ COMMANDS = {
     "compare": ("jaxleas.records.commands", "compare", "put runs side by side"),
     "report": ("jaxleas.distillation.commands", "report", "write a run's report as one HTML file"),
 }
+OTHER_NAMES = {"terrain import": "terrain convert", "terrain export": "terrain convert"}
+"""Former names of commands, and names that people look for."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -94,7 +96,7 @@ def run(arguments: Sequence[str]) -> None:
         JaxleasError: from the command.
     """
     words = [] if not arguments or arguments[0].startswith("-") else list(arguments[:2])
-    name = next((" ".join(words[:n]) for n in (2, 1) if " ".join(words[:n]) in COMMANDS), None)
+    name = next(filter(None, (_command(" ".join(words[:n])) for n in (2, 1))), None)
     if name is not None:
         _call(name, arguments[len(name.split()) :])
     elif "--version" in arguments:
@@ -103,6 +105,12 @@ def run(arguments: Sequence[str]) -> None:
         print(_overview())
     else:
         raise UsageError(_unknown(words))
+
+
+def _command(words: str) -> str | None:
+    """Return the command that words name, if there is one."""
+    name = OTHER_NAMES.get(words, words)
+    return name if name in COMMANDS else None
 
 
 def _call(name: str, arguments: Sequence[str]) -> None:

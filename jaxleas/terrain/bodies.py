@@ -79,6 +79,14 @@ def orient(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"]) -> O
     )
 
 
+def is_closed(faces: Int[np.ndarray, "N 3"]) -> bool:
+    """Tell whether faces pass each edge as often one way as the other: no edge is a rim."""
+    if not len(faces):
+        return False
+    edges = _edges(faces)
+    return not np.bincount(edges.number, np.where(edges.ahead, 1, -1)).any()
+
+
 @dataclass(frozen=True)
 class _Edges:
     """The edges on the sides of faces: side 3 f + k of face f begins at its corner k.

@@ -9,15 +9,15 @@ from jaxleas.robots import DEFAULT_ROBOT, load_robot
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.draw import draw_height_map
 from jaxleas.terrain.generator import generate_arena
-from jaxleas.terrain.height_map import HeightMap, write_height_map
+from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.mesh_scene import has_polygons, load_scene
-from jaxleas.terrain.polygons import polygon_area_vector
+from jaxleas.terrain.mesh_scene import has_polygons
 from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicable
 from jaxleas.terrain.scale import scale_for, scaled
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.terrain.shaping import holes
+from jaxleas.terrain.writers.catalogue import written_as
 from jaxleas.types import InputError
 
 
@@ -35,6 +35,8 @@ def show(
         reading: what the file does not state itself.
     """
     picture = Path(f"{file.stem}_view.png") if out is None else out
+    if picture.resolve() == file.resolve():
+        raise InputError(f"--out {picture} is the terrain itself: give the picture another name")
     height_map = import_terrain(file, reading)
     draw_height_map(height_map, picture, title=file.name)
     print(f"{file}: {describe(height_map)}\ndrawn in {picture}")
@@ -47,28 +49,24 @@ def convert(
     out: Path,
     reading: Reading = READING,
 ) -> Path:
-    """Import a mesh, an image or a scene as a height map (.npz), or a mesh as a scene (.json).
+    """Write a terrain as a file of another kind: height map, scene, STL, image, GeoTIFF or bag.
 
     Args:
         file: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
-        out: file of the height map, .npz; for a mesh also .json, the scene of its polygons.
+        out: file to write: .npz, .json, .stl, .xml (MJCF), .png, .tif, .asc, .bag, .mcap, or a name
+            without suffix for the folder of a ROS 2 bag.
         reading: what the file does not state itself.
     """
-    if has_polygons(file) and out.suffix == ".json":
-        _require_no_map(file, reading)
-        scene = load_scene(file, reading)
-        write_scene(out, scene)
-        surfaces, obstacles = len(scene.surfaces), len(scene.obstacles)
-        area = sum(np.linalg.norm(polygon_area_vector(each)) for each in scene.walkable.values())
-        print(
-            f"{file}: {surfaces} surfaces, {area:.2f} m2 for feet, {obstacles} obstacles\n"
-            f"written to {out}"
-        )
+    form = written_as(out)
+    if form.polygons is not None and (form.map is None or _stays_polygons(file, reading)):
+        if has_polygons(file):
+            _require_no_map(file, reading)
+        print(f"{file}: {form.polygons(out, file, reading)}\nwritten to {out}")
         return out
-    _require_suffix(out, ".npz")
+    assert form.map is not None
     height_map = import_terrain(file, reading)
-    write_height_map(out, height_map)
-    print(f"{file}: {describe(height_map)}\nwritten to {out}")
+    written = form.map(out, height_map)
+    print(f"{file}: {describe(height_map)}\nwritten to {out}: {written}")
     return out
 
 
@@ -123,6 +121,11 @@ def scenario(name: str, *, out: Path, seed: int = 0, robot: str = DEFAULT_ROBOT)
     return out
 
 
+def _stays_polygons(file: Path, reading: Reading) -> bool:
+    """Tell whether a file holds polygons, and nothing is asked for that makes a map of them."""
+    return has_polygons(file) and (reading.resolution, reading.fill, reading.smooth) == (None,) * 3
+
+
 def _require_no_map(file: Path, reading: Reading) -> None:
     """Refuse what is done with a map alone, when a scene is to be written."""
     done = Reading(resolution=reading.resolution, fill=reading.fill, smooth=reading.smooth)
@@ -134,6 +137,7 @@ def describe(height_map: HeightMap) -> str:
     x_min, x_max, y_min, y_max = height_map.extent
     rows, columns = height_map.shape
     low, high = np.nanmin(height_map.heights), np.nanmax(height_map.heights)
+    low, high = (float(np.round(each, 2)) + 0.0 for each in (low, high))  # no -0.00
     region, inside = holes(height_map.heights)
     sizes = (
         np.bincount(region.reshape(-1), minlength=len(inside))[inside] * height_map.resolution**2

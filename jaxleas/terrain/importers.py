@@ -23,6 +23,7 @@ from jaxleas.terrain.rasterise import (
 )
 from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.shaping import moved, shaped
+from jaxleas.terrain.unread import refuse_unread
 from jaxleas.types import InputError
 
 __all__ = ["import_mesh", "import_png", "import_terrain", "known_suffixes"]
@@ -63,6 +64,7 @@ def import_terrain(path: str | Path, reading: Reading = READING, **stated: Any) 
         require_applicable(path, how, form.options, form.title)
         height_map = moved(path, form.read(path, how), how.origin)
     else:
+        refuse_unread(path)
         known = ", ".join(known_suffixes())
         raise InputError(f"{path}: unknown terrain file type '{suffix}'; known are {known}")
     return shaped(path, height_map, how)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jaxleas.terrain.ascii_grids import read_asc
 from jaxleas.terrain.height_map import HeightMap, read_height_map
 from jaxleas.terrain.images import read_png
 from jaxleas.terrain.rasters import read_grid_map, read_tiff
@@ -52,6 +53,7 @@ MAPS: dict[str, MapFormat] = {
     ".npy": MapFormat("a table of heights", read_npy, (*MAPPING, "scale")),
     ".csv": MapFormat("a table of heights", read_csv, (*MAPPING, "scale")),
     ".txt": MapFormat("a table of heights", read_csv, (*MAPPING, "scale")),
+    ".asc": MapFormat("an ESRI ASCII grid", read_asc, (*MAPPING, "scale")),
     ".bag": _BAG,
     ".mcap": _BAG,
     ".db3": _BAG,

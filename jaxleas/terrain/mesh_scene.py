@@ -26,6 +26,7 @@ from jaxleas.terrain.polygons import (
 from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.terrain.shaping import require_rectangle
+from jaxleas.terrain.unread import refuse_unread
 from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
@@ -109,6 +110,7 @@ def load_scene(path: str | Path, reading: Reading = READING) -> Scene:
             f"{path} is a map of heights; contacts need polygons: a scene (.json) or a mesh"
             f" ({', '.join(SUFFIXES)})"
         )
+    refuse_unread(path)
     require_applicable(path, reading, MAPPING, "a scene")
     return read_placed_scene(path, reading)
 

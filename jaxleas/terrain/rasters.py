@@ -15,10 +15,9 @@ from jaxleas.terrain.height_map import (
     require_usable,
     without_no_data,
 )
-from jaxleas.terrain.places import AUTO, FARTHEST
 from jaxleas.terrain.reading import Reading
-from jaxleas.terrain.shaping import moved
-from jaxleas.types import InputError
+from jaxleas.terrain.shaping import brought_near
+from jaxleas.types import InputError, is_ground
 
 _LOG = logging.getLogger("jaxleas")
 
@@ -44,9 +43,7 @@ def read_tiff(path: Path, reading: Reading) -> HeightMap:
         return _usable(path, values, reading.resolution, (half, half))
     x, y = (float(each) for each in corner)
     found = HeightMap(values.astype(np.float32), float(cell), (x, y))
-    if reading.origin is None and max(np.abs(found.extent)) > FARTHEST:
-        found = moved(path, found, AUTO)
-    return with_cells(path, found, reading)
+    return with_cells(path, brought_near(path, found, reading), reading)
 
 
 def _grey(
@@ -129,7 +126,13 @@ def _resampled(path: Path, found: HeightMap, cell: float) -> HeightMap:
     step = cell / found.resolution
     rows, columns = (step * np.arange(each) for each in count)
     at = np.meshgrid(np.minimum(rows, size[0]), np.minimum(columns, size[1]), indexing="ij")
-    heights = map_coordinates(found.heights, at, order=1, mode="nearest", prefilter=False)
+    ground = is_ground(found.heights)
+    known, heights = (
+        map_coordinates(each, at, order=1, mode="nearest", prefilter=False)
+        for each in (ground.astype(np.float32), np.where(ground, found.heights, 0.0))
+    )
+    # A cell without ground that has no weight in a place says nothing of it.
+    heights = np.where(known > 1.0 - 1e-6, heights, np.nan)
     return HeightMap(heights.astype(np.float32), cell, found.origin)
 
 

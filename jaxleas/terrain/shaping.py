@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.places import require_near, shift_of
+from jaxleas.terrain.places import AUTO, FARTHEST, require_near, shift_of
 from jaxleas.terrain.reading import Reading, Rectangle
 from jaxleas.types import InputError, is_ground
 
@@ -28,6 +28,13 @@ def moved(path: str | Path, height_map: HeightMap, origin: str | None) -> Height
         heights=height_map.heights - np.float32(shift[2]) if shift[2] else height_map.heights,
         origin=(float(x - shift[0]), float(y - shift[1])),
     )
+
+
+def brought_near(path: str | Path, height_map: HeightMap, reading: Reading) -> HeightMap:
+    """Return a survey's map moved as `auto` does, if it lies far away and no origin is given."""
+    if reading.origin is None and max(np.abs(height_map.extent)) > FARTHEST:
+        return moved(path, height_map, AUTO)
+    return height_map
 
 
 def shaped(path: str | Path, height_map: HeightMap, reading: Reading) -> HeightMap:

@@ -47,9 +47,12 @@ def test_generate_refuses_what_makes_no_arena(tmp_path, arguments, problem):
         generate(**(arguments | {"out": tmp_path / arguments["out"]}))
 
 
-def test_import_writes_npz_only(tmp_path):
-    with pytest.raises(InputError, match=r"must end in \.npz"):
-        convert(tmp_path / "mesh.stl", out=tmp_path / "map.png")
+def test_show_refuses_to_draw_over_what_it_reads(tmp_path):
+    path = tmp_path / "map.png"
+    path.write_bytes(b"")
+    with pytest.raises(InputError, match=r"--out .*map\.png is the terrain itself"):
+        show(path, out=tmp_path / "." / "map.png")
+    assert path.read_bytes() == b""
 
 
 def test_a_named_scenario_is_written_with_its_areas(tmp_path, capsys):

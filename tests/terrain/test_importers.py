@@ -196,8 +196,8 @@ def test_maps_and_scenes_come_through_the_same_door(tmp_path):
 
 
 def test_unknown_kinds_of_file_are_answered_with_the_known(tmp_path):
-    with pytest.raises(InputError, match=r"'\.las'; known are \.json, \.stl, \.obj, \.ply, "):
-        import_terrain(tmp_path / "cloud.las")
+    with pytest.raises(InputError, match=r"'\.foo'; known are \.json, \.stl, \.obj, \.ply, "):
+        import_terrain(tmp_path / "cloud.foo")
 
 
 @pytest.mark.parametrize(

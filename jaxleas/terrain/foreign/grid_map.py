@@ -11,8 +11,8 @@ MAX_CELLS = 64_000_000
 TYPE = "grid_map_msgs/msg/GridMap"
 USUAL_LAYER = "elevation"
 # Of ROS 2 bags that carry no definitions (before Iron).
-_INFO = "float64 resolution\nfloat64 length_x\nfloat64 length_y\ngeometry_msgs/Pose pose\n"
-_GRID_MAP = (
+INFO = "float64 resolution\nfloat64 length_x\nfloat64 length_y\ngeometry_msgs/Pose pose\n"
+GRID_MAP = (
     "std_msgs/Header header\ngrid_map_msgs/GridMapInfo info\nstring[] layers\n"
     "string[] basic_layers\nstd_msgs/Float32MultiArray[] data\nuint16 outer_start_index\n"
     "uint16 inner_start_index\n"
@@ -35,8 +35,8 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
-    store.register(get_types_from_msg(_INFO, "grid_map_msgs/msg/GridMapInfo"))
-    store.register(get_types_from_msg(_GRID_MAP, TYPE))
+    store.register(get_types_from_msg(INFO, "grid_map_msgs/msg/GridMapInfo"))
+    store.register(get_types_from_msg(GRID_MAP, TYPE))
     with AnyReader([path], default_typestore=store) as reader:
         connections = _on_topic(reader.connections, options.get("topic"))
         number, last = 0, None

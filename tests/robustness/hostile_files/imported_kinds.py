@@ -21,6 +21,16 @@ MODEL = """<mujoco><compiler angle="degree"/><asset>
 <geom type="hfield" hfield="h" pos="3 0 0"/><body><freejoint/><geom type="sphere" size="1"/></body>
 </worldbody></mujoco>
 """
+GRID = """ncols 4
+nrows 3
+xllcorner 10
+yllcorner 20
+cellsize 0.25
+NODATA_value -9999
+0 0.5 1 1
+0.25 -9999 2 1
+0 0 0 1
+"""
 BOXES = """stones:
   - [[0, 0, 0], [0, 0, 1], [2.0, 2.5, 0.2], [0]]
   - {top: [1.5, 0, 0.1], size: [0.4, 0.4, 0.3], normal: [0.1, 0, 1], yaw: 0.2}
@@ -40,6 +50,7 @@ def imported_kinds(folder: Path) -> list[Kind]:
     kinds += [("boxes", "boxes.yaml", BOXES.encode(), coarse, m.mutate_text)]
     kinds += [("npy", "heights.npy", _npy(), table, m.mutate_bytes)]
     kinds += [("CSV", "heights.csv", b"0,0.5,1\n0.25,,2\n0,0,0\n", table, m.mutate_text)]
+    kinds += [("ASCII grid", "heights.asc", GRID.encode(), import_terrain, m.mutate_text)]
     kinds += [("points", "points.csv", _points(), import_terrain, m.mutate_text)]
     kinds += [("colour PNG", "colour.png", _png("RGBA"), grey, b.mutate_png)]
     kinds += [("palette PNG", "palette.png", _png("P"), grey, b.mutate_png)]

@@ -1,0 +1,1 @@
+"""Terrains as files of others: `catalogue` lists them; each file here writes one kind."""
