@@ -41,6 +41,11 @@ COMMANDS = {
     "plan": ("jaxleas.contacts.commands", "plan", "plan the contacts of a problem file"),
     "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
     "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
+    "contacts export": (
+        "jaxleas.contacts.sequence.commands",
+        "export",
+        "write a contact plan for other programs",
+    ),
     "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
     "fit": ("jaxleas.surrogates.commands", "fit", "fit a surrogate of a planner to its labels"),
     "distill": (

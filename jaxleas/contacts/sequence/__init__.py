@@ -1,0 +1,1 @@
+"""Contact plans in time, for programs of others: footsteps, contact sequences, schedules."""

@@ -1,0 +1,147 @@
+"""The function behind `jaxleas contacts export`."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.contacts.plan import ContactPlan, read_plan
+from jaxleas.contacts.problem import ContactProblem
+from jaxleas.contacts.problem_file import read_problem
+from jaxleas.contacts.sequence.files import (
+    Sampling,
+    require_sequence_name,
+    write_footsteps,
+    write_phases,
+    write_schedule,
+)
+from jaxleas.contacts.sequence.from_plan import sequence_of_postures, sequence_of_steps
+from jaxleas.contacts.sequence.timing import (
+    apart,
+    guide_times,
+    rows_of_postures,
+    rows_of_steps,
+    steady_times,
+)
+from jaxleas.contacts.sequence.values import ContactSequence
+from jaxleas.contacts.surfaces import ContactSurface, make_surface
+from jaxleas.robots import DEFAULT_ROBOT, load_robot
+from jaxleas.terrain import load_scene
+from jaxleas.types import GuidePath, InputError
+
+USUAL_STEP = 1.0
+"""Time of a step where neither a guide path nor the user states one [s]."""
+USUAL = Sampling()
+
+
+def export(
+    plan: Path,
+    problem: Path | None = None,
+    *,
+    out: Path,
+    guide: Path | None = None,
+    scene: Path | None = None,
+    query: int = 0,
+    robot: str | None = None,
+    step_time: float | None = None,
+    standing: float = 0.2,
+    sampling: Sampling = USUAL,
+) -> ContactSequence:
+    """Write a contact plan for other programs: footsteps, phases, or a schedule of nodes.
+
+    Args:
+        plan: the contact plan, .json.
+        problem: the contact problem it answers, .json; of a plan of sampling the scene will do.
+        out: footsteps (.csv), phases for Crocoddyl and multicontact-api (.json), or a schedule for
+            mpx (.npz).
+        guide: the guide path, .npz: landings have its times, and a schedule its root.
+        scene: the scene of a plan of sampling, .json or a mesh.
+        query: number of the path in the guide's file.
+        robot: robot of a plan of sampling, talos by default.
+        step_time: time of each step instead of the guide path's, 1.0 without a guide path [s].
+        standing: share of the time of each step in which all effectors stand.
+        sampling: how a schedule is sampled.
+    """
+    require_sequence_name(out)
+    made = read_plan(plan)
+    steps = 0 if made.footholds is None else len(made.footholds)
+    if not steps:
+        raise InputError(f"{plan} is '{made.status}' and has no footholds: nothing can be written")
+    asked = None if problem is None else read_problem(problem)
+    path = _guide(guide, query)
+    rows = None if path is None else _rows(made, asked, path)
+    raw = _times(steps, rows, path, step_time)
+    times = apart(plan, raw)
+    if made.postures is not None:
+        surfaces = _surfaces(plan, asked, scene)
+        found = load_robot(robot or (asked.robot if asked else DEFAULT_ROBOT))
+        sequence = sequence_of_postures(made, surfaces, found, times, standing)
+    elif asked is None:
+        raise InputError(
+            f"{plan} is of the {made.planner} planner: say which problem it answers: jaxleas"
+            f" contacts export {plan} PROBLEM.json --out {out}"
+        )
+    else:
+        sequence = sequence_of_steps(asked, made, times, standing)
+    match out.suffix.lower():
+        case ".csv":
+            said = write_footsteps(out, sequence)
+        case ".json":
+            said = write_phases(out, sequence)
+        case _:
+            said = write_schedule(out, sequence, sampling, _in_time(path, rows, times))
+    early = "" if made.feasible else f"; the plan ends early: {made.reason}"
+    if rows is None and step_time is None:
+        print(f"{plan}: {USUAL_STEP:g} s a step; --guide or --step-time say otherwise")
+    print(f"{plan}: {said}{early}\nwritten to {out}")
+    return sequence
+
+
+def _guide(guide: Path | None, query: int) -> GuidePath | None:
+    from jaxleas.contacts.guide_file import read_guide_path
+
+    return None if guide is None else read_guide_path(guide, query)
+
+
+def _rows(plan: ContactPlan, problem: ContactProblem | None, guide: GuidePath) -> list[int]:
+    if plan.postures is not None:
+        return rows_of_postures(plan)
+    assert plan.footholds is not None
+    return [] if problem is None else rows_of_steps(problem, guide, len(plan.footholds))
+
+
+def _times(
+    steps: int,
+    rows: list[int] | None,
+    guide: GuidePath | None,
+    step_time: float | None,
+) -> Float[np.ndarray, " L"]:
+    if guide is not None and rows is not None and step_time is None:
+        return guide_times(rows, guide)
+    return steady_times(steps, USUAL_STEP if step_time is None else step_time)
+
+
+def _surfaces(
+    plan: Path, problem: ContactProblem | None, scene: Path | None
+) -> dict[str, ContactSurface]:
+    if scene is not None:
+        surfaces = load_scene(scene).surfaces
+        return {name: make_surface(each, f"{scene}: '{name}'") for name, each in surfaces.items()}
+    if problem is not None:
+        return problem.surfaces
+    raise InputError(
+        f"{plan} holds postures along a guide path: say the surfaces that it stands on, with"
+        " --scene SCENE.json, or its PROBLEM.json"
+    )
+
+
+def _in_time(
+    guide: GuidePath | None, rows: list[int] | None, times: Float[np.ndarray, " L"]
+) -> GuidePath | None:
+    """Return a guide path in the time of a sequence, whose landings come at other times."""
+    if guide is None or rows is None:
+        return None
+    own = np.concatenate([[0.0], guide_times(rows, guide)])
+    since = np.asarray(guide.time, np.float64) - float(guide.time[0])
+    return replace(guide, time=np.interp(since, own, np.concatenate([[0.0], times])))
