@@ -6,6 +6,7 @@ from .atomic import write_npz as write_npz
 from .atomic import write_text as write_text
 from .digest import digest_of as digest_of
 from .digest import require_digest as require_digest
+from .json_text import MAX_JSON_BYTES as MAX_JSON_BYTES
 from .json_text import parse_json as parse_json
 from .keys import refuse_misspelt_keys as refuse_misspelt_keys
 from .lock import FolderLock as FolderLock

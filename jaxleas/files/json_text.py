@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 from jaxleas.types import InputError
 
-MAX_BYTES = 64 * 2**20
+MAX_JSON_BYTES = 64 * 2**20
 MAX_CONTAINERS = 4_000_000
 """Largest number of `[` and `{` in the text (strings count, too): objects and lists cost most
 memory. With both bounds no file takes more than about a gigabyte."""
@@ -25,8 +25,10 @@ def parse_json(text: bytes | str, where: str) -> Any:
         InputError: the text is not JSON, too large, nested too deep, or holds an unreasonable
             number.
     """
-    if len(text) > MAX_BYTES:
-        raise InputError(f"{where} is {len(text)} bytes of JSON, more than the {MAX_BYTES} read")
+    if len(text) > MAX_JSON_BYTES:
+        raise InputError(
+            f"{where} is {len(text)} bytes of JSON, more than the {MAX_JSON_BYTES} read"
+        )
     if isinstance(text, bytes):
         try:
             text = text.decode("utf-8-sig")  # some editors put a byte order mark in front

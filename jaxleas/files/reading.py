@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.files.json_text import MAX_BYTES as MAX_JSON_BYTES
-from jaxleas.files.json_text import parse_json
+from jaxleas.files.json_text import MAX_JSON_BYTES, parse_json
 from jaxleas.files.npz import MAX_BYTES, DamagedError, read_arrays, read_plain_array
 from jaxleas.types import InputError
 

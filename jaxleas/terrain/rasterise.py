@@ -128,13 +128,10 @@ def padded_polygons(
     """Repeat last vertices until all polygons have as many; an edge of length 0 has no effect."""
     if isinstance(polygons, np.ndarray):
         return polygons.astype(np.float64, copy=False)
-    most = max(len(vertices) for vertices in polygons)
-    return np.stack(
-        [
-            np.pad(vertices, ((0, most - len(vertices)), (0, 0)), mode="edge")
-            for vertices in polygons
-        ]
-    ).astype(np.float64)
+    lengths = np.array([len(vertices) for vertices in polygons])
+    last = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
+    corners = np.concatenate(polygons).astype(np.float64, copy=False)
+    return corners[(np.cumsum(lengths) - lengths)[:, None] + last]
 
 
 def _planes(

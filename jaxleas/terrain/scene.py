@@ -1,6 +1,7 @@
 """Scenes: convex contact surfaces, obstacles and named areas, from which height maps are made."""
 
 import difflib
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,7 +11,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.files import read_json, refuse_misspelt_keys, require_version, write_json
+from jaxleas.files import (
+    MAX_JSON_BYTES,
+    read_json,
+    refuse_misspelt_keys,
+    require_version,
+    write_text,
+)
 from jaxleas.terrain.mending import counter_clockwise, flattened, turned_up, without_repeats
 from jaxleas.terrain.polygons import (
     STANDING_SLOPE,
@@ -126,14 +133,25 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def write_scene(path: str | Path, scene: Scene) -> None:
-    """Write a scene as JSON, whole or not at all; coordinates to a micrometre."""
+    """Write a scene as JSON, whole or not at all; coordinates to a micrometre.
+
+    Raises:
+        InputError: the file would be larger than scenes that are read.
+    """
     groups = {"surfaces": scene.surfaces, "obstacles": scene.obstacles, "areas": scene.areas}
     lists = {
         group: {name: np.round(vertices, 6).tolist() for name, vertices in polygons.items()}
         for group, polygons in groups.items()
     }
     touch = {"touch": dict(scene.touch)} if scene.touch else {}
-    write_json(path, {"version": VERSION, **lists, **touch})
+    text = json.dumps({"version": VERSION, **lists, **touch}, indent=2, allow_nan=False) + "\n"
+    if len(text) > MAX_JSON_BYTES:
+        raise InputError(
+            f"{path} would hold {len(scene.polygons)} polygons in {len(text) / 2**20:.0f} MiB, more"
+            f" than the {MAX_JSON_BYTES // 2**20} MiB that are read: give --crop, or decimate the"
+            " mesh"
+        )
+    write_text(path, text)
 
 
 def require_valid(scene: Scene, where: str | Path) -> None:
