@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.terrain.bodies import orient, welded
+from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.height_map import HeightMap, require_resolution, require_usable
 from jaxleas.terrain.images import import_png
 from jaxleas.terrain.losses import losses, say_losses
 from jaxleas.terrain.map_formats import MAPS
+from jaxleas.terrain.mesh_edges import welded
 from jaxleas.terrain.mesh_formats import MESHES
 from jaxleas.terrain.mesh_scene import read_placed_scene
 from jaxleas.terrain.meshes import read_triangles

@@ -10,10 +10,11 @@ from jaxtyping import Float, Int
 
 from jaxleas.terrain.agreement import compare, require_agreement
 from jaxleas.terrain.areas import area_vectors
-from jaxleas.terrain.bodies import orient, welded
+from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.cropping import cropped_scene
 from jaxleas.terrain.map_formats import MAPS
 from jaxleas.terrain.merging import merged
+from jaxleas.terrain.mesh_edges import welded
 from jaxleas.terrain.meshes import SUFFIXES, read_triangles
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.polygons import MIN_AREA, STANDING_SLOPE, VERTICAL_SLOPE

@@ -7,8 +7,9 @@ from jaxtyping import Float
 
 from jaxleas.files import write_bytes
 from jaxleas.terrain.areas import area_vectors
-from jaxleas.terrain.bodies import is_closed, orient, welded
+from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.mesh_edges import is_closed, welded
 from jaxleas.terrain.mesh_files import MAX_TRIANGLES
 from jaxleas.terrain.mesh_formats import MESHES
 from jaxleas.terrain.mesh_scene import load_scene
