@@ -142,7 +142,9 @@ def describe(height_map: HeightMap) -> str:
     sizes = (
         np.bincount(region.reshape(-1), minlength=len(inside))[inside] * height_map.resolution**2
     )
-    found = f"{len(sizes)} holes" + (f" of up to {sizes.max():.2g} m2" if len(sizes) else "")
+    found = f"{len(sizes)} hole{'' if len(sizes) == 1 else 's'}" + (
+        f" of up to {sizes.max():.2g} m2" if len(sizes) else ""
+    )
     return (
         f"x {x_min:.2f} to {x_max:.2f} m, y {y_min:.2f} to {y_max:.2f} m, "
         f"{columns} x {rows} cells of {height_map.resolution:g} m, "

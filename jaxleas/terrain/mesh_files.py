@@ -49,6 +49,8 @@ class Triangles(NamedTuple):
 def read_stl(path: Path) -> Triangles:
     """Return the triangles of an STL file, binary or text."""
     content = read_bytes(path, MAX_BYTES)
+    if not content:
+        raise _broken(path, "it is empty")
     count = int.from_bytes(content[80:84], "little") if len(content) >= _HEADER else 0
     if len(content) == _HEADER + _RECORD * count or _has_a_tail(content, count):
         _require_few(path, count)

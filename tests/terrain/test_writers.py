@@ -238,4 +238,17 @@ def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path, scene_fi
         convert(scene_file, out=tmp_path / "a.json", reading=Reading(resolution=0.1))
     with pytest.raises(InputError, match="is a map of heights"):
         convert(map_file, out=tmp_path / "a.json")
+    for name in ("x.bag", "x.mcap", "x", "x.tif", "x.stl", "x.xml"):
+        with pytest.raises(InputError, match=r"cannot write .*map\.npz/x"):
+            convert(map_file, out=map_file / name)
     assert sorted(each.name for each in tmp_path.iterdir()) == sorted([*listed, "bag"])
+
+
+def test_a_map_of_single_cells_makes_no_body(tmp_path):
+    from jaxleas.terrain import write_height_map
+
+    heights = np.full((5, 5), np.nan, np.float32)
+    heights[2, 2] = 1.0
+    write_height_map(tmp_path / "lonely.npz", HeightMap(heights, 0.05, (0.0, 0.0)))
+    with pytest.raises(InputError, match=r"a\.stl: no three cells of ground"):
+        convert(tmp_path / "lonely.npz", out=tmp_path / "a.stl")

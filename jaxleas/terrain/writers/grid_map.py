@@ -28,8 +28,8 @@ def write_bag(path: Path, height_map: HeightMap) -> str:
         from rosbags.rosbag1 import Writer
 
     store = _store(1)
-    with tempfile.TemporaryDirectory(dir=_folder(path)) as folder:
-        made = Path(folder) / "map.bag"
+    with _beside(path) as folder:
+        made = folder / "map.bag"
         with Writer(made) as writer:
             connection = writer.add_connection(TOPIC, TYPE, typestore=store)
             writer.write(connection, 0, store.serialize_ros1(_message(store, height_map, 1), TYPE))
@@ -39,8 +39,8 @@ def write_bag(path: Path, height_map: HeightMap) -> str:
 
 def write_mcap(path: Path, height_map: HeightMap) -> str:
     """Write an MCAP file with one GridMap of ROS 2; return its topic and layer."""
-    with tempfile.TemporaryDirectory(dir=_folder(path)) as folder:
-        made = Path(folder) / "bag"
+    with _beside(path) as folder:
+        made = folder / "bag"
         _write_ros2(path, made, height_map, "MCAP")
         _put(next(made.glob("*.mcap")), path)
     return _SAID
@@ -54,8 +54,8 @@ def write_folder(path: Path, height_map: HeightMap) -> str:
     """
     if path.exists():
         raise InputError(f"{path} exists: a ROS 2 bag is a folder of its own; give another name")
-    with tempfile.TemporaryDirectory(dir=_folder(path)) as folder:
-        made = Path(folder) / path.name
+    with _beside(path) as folder:
+        made = folder / path.name
         _write_ros2(path, made, height_map, "SQLITE3")
         made.rename(path)
     return f"the folder of a ROS 2 bag, {_SAID}"
@@ -135,13 +135,19 @@ def _message(store: Any, height_map: HeightMap, version: int) -> Any:
     )
 
 
-def _folder(path: Path) -> Path:
-    """Return the folder of a file, made where it is missing: what is moved within it is whole."""
+@contextmanager
+def _beside(path: Path) -> Iterator[Path]:
+    """Yield a temporary folder beside a file: what is moved from there to its name is whole.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".") as folder:
+            yield Path(folder)
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from error
-    return path.parent
 
 
 def _put(made: Path, path: Path) -> None:

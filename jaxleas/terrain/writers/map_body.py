@@ -1,5 +1,7 @@
 """Height maps as one closed body, which simulators need."""
 
+from pathlib import Path
+
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
@@ -10,11 +12,15 @@ THICKNESS = 0.2
 """Depth of the body below the lowest ground [m]."""
 
 
-def map_body(height_map: HeightMap) -> Float[np.ndarray, "N 3 3"]:
+def map_body(height_map: HeightMap, where: str | Path) -> Float[np.ndarray, "N 3 3"]:
     """Return a closed body whose upper face passes through the middles of the cells.
 
     That is what simulators make of height fields. The body ends at the middles of the outermost
     cells; a cell of ground without neighbours in two directions is lost.
+
+    Args:
+        height_map: heights of the cells.
+        where: name of the file, for the message.
 
     Raises:
         InputError: there are no such neighbours anywhere.
@@ -27,7 +33,9 @@ def map_body(height_map: HeightMap) -> Float[np.ndarray, "N 3 3"]:
     points = np.stack([*np.meshgrid(x, y), z], axis=-1).reshape(-1, 3)
     faces = faces_between(ground)
     if not len(faces):
-        raise InputError("the map has no three cells of ground in a corner: it makes no body")
+        raise InputError(
+            f"{where}: no three cells of ground of the map meet at a corner: it makes no body"
+        )
     base = points.copy()
     base[:, 2] = z[ground].min() - THICKNESS
     start, end = _rim(faces).T

@@ -63,6 +63,6 @@ def write_polygons_stl(path: Path, file: Path, reading: Reading) -> str:
 
 def write_map_stl(path: Path, height_map: HeightMap) -> str:
     """Write a height map as one closed body; return what it is."""
-    triangles = map_body(height_map)
+    triangles = map_body(height_map, path)
     write_stl(path, triangles)
     return f"one closed body of {len(triangles)} triangles through the middles of the cells"
