@@ -19,6 +19,8 @@ import pinocchio  # pyright: ignore[reportMissingImports]
 STEP_HEIGHT = 0.1
 """Height of a swing above the higher of both contacts [m]."""
 LEAST_KNOTS = 2
+SWING, LANDING = 1e5, 1e6
+"""Weights of an effector's place on its way, and where it lands."""
 
 
 def placement(pose: dict[str, Any]) -> pinocchio.SE3:
@@ -79,7 +81,8 @@ class Walk:
                         landing["effector"],
                         swing(start, placement(landing), (knot + 1) / count),
                     )
-                knots.append(self._knot(phase["contacts"], middle + com, target))
+                weight = LANDING if knot == count - 1 else SWING
+                knots.append(self._knot(phase["contacts"], middle + com, target, weight))
             if landing is not None:
                 latest[landing["effector"]] = landing
         return crocoddyl.ShootingProblem(self.start, knots, knots[-1])
@@ -109,7 +112,11 @@ class Walk:
         return np.array([0.0, 0.0, com[2] - middle[2]])
 
     def _knot(
-        self, contacts: dict[str, Any], com: np.ndarray, target: tuple[str, Any] | None
+        self,
+        contacts: dict[str, Any],
+        com: np.ndarray,
+        target: tuple[str, Any] | None,
+        weight: float,
     ) -> Any:
         """Return the action model of one interval: contacts held, and an effector that moves."""
         state, controls = self.state, self.actuation.nu
@@ -125,7 +132,7 @@ class Walk:
             held.addContact(
                 name,
                 crocoddyl.ContactModel6D(
-                    state, frame, pose, pinocchio.LOCAL, controls, np.array([0.0, 30.0])
+                    state, frame, pose, pinocchio.LOCAL, controls, np.array([50.0, 30.0])
                 ),
             )
             described = self.content["effectors"][name]
@@ -142,7 +149,7 @@ class Walk:
             residual = crocoddyl.ResidualModelFramePlacement(
                 state, self.frames[target[0]], target[1], controls
             )
-            add("swing", residual, 1e5)
+            add("swing", residual, weight)
         add("com", crocoddyl.ResidualModelCoMPosition(state, com, controls), 1e3)
         weights = np.array([0.0] * 3 + [500.0] * 3 + [0.01] * (state.nv - 6) + [10.0] * state.nv)
         add(
