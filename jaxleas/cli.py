@@ -24,6 +24,11 @@ COMMANDS = {
         "convert",
         "write a terrain as another kind of file",
     ),
+    "terrain surfaces": (
+        "jaxleas.terrain.commands",
+        "surfaces",
+        "find the planar surfaces of a height map",
+    ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
     "evaluate": ("jaxleas.reports.commands", "evaluate", "judge a policy on terrains unseen"),

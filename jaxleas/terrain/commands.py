@@ -1,4 +1,4 @@
-"""The functions behind `jaxleas terrain show`, `import`, `generate` and `scenario`."""
+"""The functions behind `jaxleas terrain show`, `import`, `surfaces`, `generate`, `scenario`."""
 
 from pathlib import Path
 
@@ -7,11 +7,15 @@ from pydantic import ValidationError
 
 from jaxleas.robots import DEFAULT_ROBOT, load_robot
 from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.draw import draw_height_map
+from jaxleas.terrain.draw import draw_height_map, require_picture
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.importers import import_terrain
-from jaxleas.terrain.mesh_scene import has_polygons
+from jaxleas.terrain.loading import has_polygons, is_map, scene_of_surfaces
+from jaxleas.terrain.planes.finding import find_surfaces
+from jaxleas.terrain.planes.picture import draw_surfaces
+from jaxleas.terrain.planes.report import require_surfaces, surfaces_in_words
+from jaxleas.terrain.planes.settings import PLANE_SEARCH, PlaneSearch
 from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicable
 from jaxleas.terrain.scale import scale_for, scaled
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
@@ -68,6 +72,42 @@ def convert(
     written = form.map(out, height_map)
     print(f"{file}: {describe(height_map)}\nwritten to {out}: {written}")
     return out
+
+
+def surfaces(
+    file: Path,
+    *,
+    out: Path | None = None,
+    picture: Path | None = None,
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
+) -> None:
+    """Find the planar surfaces of a height map, and write them as a scene (.json).
+
+    Args:
+        file: height map, image, table or bag; docs/files.md lists all kinds.
+        out: file of the scene, .json; by default only what is found is printed.
+        picture: draw the surfaces, and the cells left over, over the map (.png, .svg, .pdf).
+        reading: what the file does not state itself.
+        search: what counts as a surface.
+    """
+    if out is not None:
+        _require_suffix(out, ".json")
+    if picture is not None:
+        require_picture(picture)
+    if not is_map(file):
+        raise InputError(
+            f"{file} is no map of heights: a scene or a mesh states its surfaces itself"
+        )
+    height_map = import_terrain(file, reading)
+    found = find_surfaces(height_map, search)
+    if picture is not None:  # also where nothing is found: it shows why
+        draw_surfaces(height_map, found, picture)
+    require_surfaces(file, found)
+    print(f"{file}: {surfaces_in_words(found)}")
+    if out is not None:
+        write_scene(out, scene_of_surfaces(found))
+        print(f"written to {out}")
 
 
 def generate(

@@ -61,7 +61,7 @@ def draw_height_map(
     if colour_bar:
         _draw_colour_bar(ax, height_map, scale, greys)
     if path is not None:
-        _save(ax, Path(path))
+        save_picture(ax, Path(path))
     return ax
 
 
@@ -133,10 +133,20 @@ def _draw_colour_bar(
         ax.legend(handles=[patch], loc="upper right", fontsize="small", framealpha=0.9)
 
 
-def _save(ax: "Axes", path: Path) -> None:
+def require_picture(path: str | Path) -> None:
+    """Refuse the name of a picture whose type cannot be drawn."""
+    if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
+
+
+def save_picture(ax: "Axes", path: Path) -> None:
+    """Write the picture that axes are part of, whole or not at all.
+
+    Raises:
+        InputError: the picture cannot be written, or is of an unknown type.
+    """
     figure = ax.get_figure(root=True)
     assert figure is not None
-    if path.suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{path.suffix}'")
+    require_picture(path)
     with atomic_path(path) as temporary:
         figure.savefig(temporary, dpi=110)

@@ -55,7 +55,7 @@ def import_terrain(path: str | Path, reading: Reading = READING, **stated: Any) 
     """
     how = replace(reading, **stated)
     path = Path(path)
-    suffix = ".mcap" if _is_bag(path) else path.suffix.lower()
+    suffix = ".mcap" if is_bag(path) else path.suffix.lower()
     if suffix == ".json":
         height_map = _scene_map(path, how)
     elif suffix in MESHES:
@@ -127,5 +127,5 @@ def _outward(triangles: Float[np.ndarray, "N 3 3"]) -> Float[np.ndarray, "N 3 3"
     return points[orient(points, faces).faces]
 
 
-def _is_bag(path: Path) -> bool:
+def is_bag(path: Path) -> bool:
     return path.is_dir() and (path / "metadata.yaml").is_file()

@@ -12,17 +12,15 @@ from jaxleas.terrain.agreement import compare, require_agreement
 from jaxleas.terrain.areas import area_vectors
 from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.cropping import cropped_scene
-from jaxleas.terrain.map_formats import MAPS
 from jaxleas.terrain.merging import merged
 from jaxleas.terrain.mesh_edges import welded
-from jaxleas.terrain.meshes import SUFFIXES, read_triangles
+from jaxleas.terrain.meshes import read_triangles
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.polygons import MIN_AREA, STANDING_SLOPE, VERTICAL_SLOPE
 from jaxleas.terrain.rasterise import padded_polygons
-from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
+from jaxleas.terrain.reading import READING, Reading, Up
 from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.terrain.shaping import require_rectangle
-from jaxleas.terrain.unread import refuse_unread
 from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
@@ -85,34 +83,6 @@ def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"]) -> S
         else:
             obstacles[f"obstacle_{len(obstacles)}"] = vertices
     return Scene(surfaces, obstacles)
-
-
-def load_scene(path: str | Path, reading: Reading = READING) -> Scene:
-    """Return a terrain as polygons: a scene, or a mesh.
-
-    Args:
-        path: path of a .json scene, or of a mesh.
-        reading: what the file does not state itself, and what is done with it.
-
-    Raises:
-        InputError: the file has no polygons, or cannot be used.
-    """
-    suffix = Path(path).suffix.lower()
-    if suffix in SUFFIXES:
-        return mesh_to_scene(path, reading=reading)
-    if suffix in MAPS:
-        raise InputError(
-            f"{path} is a map of heights; contacts need polygons: a scene (.json) or a mesh"
-            f" ({', '.join(SUFFIXES)})"
-        )
-    refuse_unread(path)
-    require_applicable(path, reading, MAPPING, "a scene")
-    return read_placed_scene(path, reading)
-
-
-def has_polygons(path: str | Path) -> bool:
-    """Return whether a terrain file holds polygons rather than heights, by its suffix."""
-    return Path(path).suffix.lower() in (".json", *SUFFIXES)
 
 
 def read_placed_scene(path: str | Path, reading: Reading) -> Scene:

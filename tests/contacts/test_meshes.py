@@ -50,9 +50,7 @@ def test_a_mesh_becomes_a_scene_file(shared, tmp_path) -> None:
     assert list(load_scene(mesh).surfaces) == list(twice.surfaces)
 
 
-def test_a_map_of_heights_has_no_surfaces(tmp_path) -> None:
-    with pytest.raises(InputError, match="is a map of heights; contacts need polygons"):
-        load_scene(tmp_path / "map.npz")
+def test_a_scene_without_surfaces_is_refused(tmp_path) -> None:
     (tmp_path / "scene.json").write_text(json.dumps({"surfaces": {}}))
     with pytest.raises(InputError, match="has no surfaces"):
         load_scene(tmp_path / "scene.json")

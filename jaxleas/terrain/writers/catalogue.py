@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from jaxleas.terrain.height_map import HeightMap, write_height_map
-from jaxleas.terrain.mesh_scene import load_scene
+from jaxleas.terrain.loading import load_scene
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.scene import write_scene

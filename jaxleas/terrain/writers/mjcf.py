@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.files import atomic_path
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.mesh_scene import load_scene
+from jaxleas.terrain.loading import load_scene
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.writers.scene_bodies import THICKNESS, Prism, prisms_of
 from jaxleas.types import is_ground

@@ -9,10 +9,10 @@ from jaxleas.files import write_bytes
 from jaxleas.terrain.areas import area_vectors
 from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.height_map import HeightMap
+from jaxleas.terrain.loading import load_scene
 from jaxleas.terrain.mesh_edges import is_closed, welded
 from jaxleas.terrain.mesh_files import MAX_TRIANGLES
 from jaxleas.terrain.mesh_formats import MESHES
-from jaxleas.terrain.mesh_scene import load_scene
 from jaxleas.terrain.meshes import read_triangles
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.writers.map_body import map_body

@@ -1,0 +1,13 @@
+"""Cells that hang together by their sides."""
+
+from typing import cast
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+
+def connected(cells: Bool[np.ndarray, "R C"]) -> tuple[Int[np.ndarray, "R C"], int]:
+    """Return the number of the set that each cell belongs to, 0 for none, and the count of sets."""
+    from scipy.ndimage import label
+
+    return cast(tuple[np.ndarray, int], label(cells))
