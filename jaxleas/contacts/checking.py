@@ -11,6 +11,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
 from jaxleas.contacts.trunk import trunk_collision
 from jaxleas.robots import load_robot
+from jaxleas.terrain import Scene
 from jaxleas.types import InputError, JaxleasError
 
 
@@ -24,7 +25,7 @@ def followed_by(
     plan: Path,
     problem: Path | None,
     guide: Path | None,
-    scene: Path | None,
+    scene: Scene | None,
     query: int,
     robot: str | None,
 ) -> AskedGuide:
@@ -61,14 +62,14 @@ def check_footholds(plan: Path, read: ContactPlan, problem: Path, asked: Contact
 
 
 def check_trunk(
-    plan: Path, guide: Path | None, scene: Path | None, query: int, robot: str | None
+    plan: Path, guide: Path | None, scene: Scene | None, query: int, robot: str | None
 ) -> str:
     """Return what is certain of the trunk of a plan of footholds alone, as a clause.
 
     Args:
         plan: file of the plan, for messages.
         guide: file of the guide path that it follows, if known.
-        scene: file of the scene that it crosses, if known.
+        scene: scene that it crosses, if known.
         query: number of the path in the guide's file.
         robot: robot that a person named, if any.
 
@@ -85,7 +86,7 @@ def check_trunk(
     asked, _ = read_asked(guide, query, scene, robot)
     touched = trunk_collision(load_robot(asked.robot), asked.scene, asked.guide)
     if touched is not None:
-        raise NotCertifiedError(f"{plan} is no plan for {guide} on {scene}: {touched.sentence}")
+        raise NotCertifiedError(f"{plan} is no plan for {guide}: {touched.sentence}")
     return "the trunk touches nothing along the guide path"
 
 

@@ -22,6 +22,7 @@ from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
+from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading, load_scene
 from jaxleas.types import InputError
 
 __all__ = ["NotCertifiedError", "check", "contacts", "plan"]
@@ -76,6 +77,8 @@ def check(
     query: int = 0,
     robot: str | None = None,
     picture: Path | None = None,
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
 ) -> None:
     """Recompute every constraint on a plan, in metres.
 
@@ -84,17 +87,20 @@ def check(
         problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
         guide: the guide path it follows, .npz; of any planner but sampling, the trunk
             is checked.
-        scene: the scene it crosses, .json or a mesh; with --guide.
+        scene: the scene it crosses, .json, a mesh or a map; with --guide.
         query: number of the path in the guide's file.
         robot: robot of a plan that follows a guide; by default the one that walked the
             guide path, or talos where its file does not say.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
+        reading: what the scene's file does not state itself.
+        search: what counts as a surface, if the scene is a map.
     """
     read = read_plan(plan)
     if picture is not None:
         _require_writable_names(Path("plan.json"), picture)
+    ground = None if scene is None else load_scene(scene, reading, search)
     if read.postures is not None:
-        asked = followed_by(plan, problem, guide, scene, query, robot)
+        asked = followed_by(plan, problem, guide, ground, query, robot)
         check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
         return
     if problem is None:
@@ -106,7 +112,7 @@ def check(
     if picture is not None:
         draw(picture, asked, read)
     tightest = check_footholds(plan, read, problem, asked)
-    trunk = check_trunk(plan, guide, scene, query, robot)
+    trunk = check_trunk(plan, guide, ground, query, robot)
     print(
         f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {tightest}); {trunk}"
     )
@@ -129,12 +135,14 @@ def contacts(
     cost: Cost | None = None,
     max_combinations: int | None = None,
     picture: Path | None = None,
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
 ) -> ContactPlan:
     """Plan contacts along a guide path through a scene.
 
     Args:
         guide: the guide path, .npz.
-        scene: its terrain as polygons: .json scene, or a mesh in metres, z up.
+        scene: its terrain: a scene (.json), a mesh, or a map, whose surfaces are found.
         planner: planner to use; those that need a contact problem get one made of the guide.
         out: the plan, .json.
         problem: file to write the contact problem to, too, .json.
@@ -152,6 +160,8 @@ def contacts(
             quadratic distance; none by default.
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
+        reading: what the scene's file does not state itself.
+        search: what counts as a surface, if the scene is a map.
     """
     from jaxleas.contacts.guide_robot import read_asked
 
@@ -164,11 +174,13 @@ def contacts(
     if found.needs == "guide":
         _require_own_contacts(found, problem=problem, **options, cost=given["cost"])
         settings = plan_settings_from(found, keep_every=every, **given)
-        followed, ending = read_asked(guide, query, scene, robot)
+        crossed = load_scene(scene, reading, search)
+        followed, ending = read_asked(guide, query, crossed, robot)
         answer = found.plan(followed, settings, time_limit=time_limit)
         return report_plan(answer.but(guide_ended=ending), followed, out, picture)
     settings = plan_settings_from(found, **given)
-    followed, ending = read_asked(guide, query, scene, robot)
+    crossed = load_scene(scene, reading, search)
+    followed, ending = read_asked(guide, query, crossed, robot)
     kept = found.settings().keep_every if every is None else every
     made = _problem(followed, kept, options)
     if note := model_note(model, followed.robot):

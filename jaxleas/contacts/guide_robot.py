@@ -9,7 +9,7 @@ from jaxtyping import Float
 from jaxleas.contacts.guide_file import read_walked
 from jaxleas.contacts.planner import AskedGuide
 from jaxleas.robots import RecordedRobot, Walker, height_complaint, load_robot, walker_of
-from jaxleas.terrain import Scene, load_scene, polygon_area_vector
+from jaxleas.terrain import Scene, polygon_area_vector
 from jaxleas.types import Ending, GuidePath, InputError
 
 MOST_LOOKED_AT = 200
@@ -18,26 +18,26 @@ _STEEPEST = 0.1  # a polygon whose normal has a smaller vertical part is no grou
 
 
 def read_asked(
-    guide: Path, query: int, scene: Path, robot: str | None
+    guide: Path, query: int, scene: Scene, robot: str | None
 ) -> tuple[AskedGuide, Ending]:
-    """Read a guide path, its scene, and whose it is; also return how the path ended.
+    """Read a guide path and whose it is; also return how the path ended.
 
     Where the robot is not plain, a line is printed.
 
     Args:
         guide: file of the guide path.
         query: number of the path in the file.
-        scene: file of the scene that it crosses.
+        scene: scene that it crosses.
         robot: robot that a person named; None where nobody did.
 
     Raises:
         InputError: a file cannot be used, or the path is another robot's.
     """
-    walked, crossed = read_walked(guide, query), load_scene(scene)
-    walker = planned_robot(walked.robot, robot, [walked.guide], lambda: crossed, guide)
+    walked = read_walked(guide, query)
+    walker = planned_robot(walked.robot, robot, [walked.guide], lambda: scene, guide)
     if walker.note:
         print(walker.note)
-    return AskedGuide(walker.name, walked.guide, crossed), walked.ending
+    return AskedGuide(walker.name, walked.guide, scene), walked.ending
 
 
 def planned_robot(

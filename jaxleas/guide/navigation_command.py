@@ -9,7 +9,7 @@ import numpy as np
 from jaxleas.configuration import Allow
 from jaxleas.guide.registry import Method, SteeringName, find_method
 from jaxleas.robots import DEFAULT_ROBOT
-from jaxleas.terrain import READING, Reading
+from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ def navigate(
     out: Path,
     picture: Path | None = None,
     reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
     allow: Allow = (),
 ) -> None:
     """Find a guide path between two places on any terrain, through waypoints where needed.
@@ -58,6 +59,7 @@ def navigate(
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
         reading: details that the file does not state itself.
+        search: what counts as a surface, if the terrain is a map; the final check is on these.
         allow: conditions of your own that the policy was trained under, to walk it under them; by
             default R* and C.
 
@@ -68,11 +70,16 @@ def navigate(
     from jaxleas.guide.picture import draw_navigation, require_picture
     from jaxleas.guide.place_refusal import require_valid
     from jaxleas.guide.roadmaps import Budget, Places
-    from jaxleas.guide.roadmaps.exact import check_exactly, require_exact_start, scene_of
+    from jaxleas.guide.roadmaps.exact import (
+        check_exactly,
+        require_exact_start,
+        scene_of,
+        surfaces_near,
+    )
     from jaxleas.guide.roadmaps.ompl import import_ompl
     from jaxleas.guide.roadmaps.tuning import make_navigator
     from jaxleas.guide.starts import start_motion
-    from jaxleas.terrain import import_terrain
+    from jaxleas.terrain import import_terrain, is_map, require_search_of_map
     from jaxleas.xla import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)
@@ -86,6 +93,7 @@ def navigate(
         require_picture(picture)
     if planner != "none":
         import_ompl()
+    require_search_of_map(terrain, search)
     keep_compiled_programs()
     named = find_method(steering)
     env, method = _steering(named, policy, robot, allow)
@@ -99,7 +107,8 @@ def navigate(
         require_exact_start(places, scene, motion)
     navigator = make_navigator(places, method, named.edges, planner, scene)
     found = navigator.navigate(motion, np.array(goal), Budget(limit, connections), seed)
-    check = None if scene is None else check_exactly(env.robot, scene, found.path)
+    surfaces = surfaces_near(ground, found.path, search) if is_map(terrain) else scene
+    check = None if surfaces is None else check_exactly(env.robot, surfaces, found.path)
     _write(out, found, env.config.robot)
     if picture is not None:
         draw_navigation(picture, ground, found.path, found.waypoints, goal)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from jaxleas.contacts import DEFAULT_JUDGE, PlannerName, find_planner, settings_from
+from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading, load_scene
 from jaxleas.types import InputError, describe_endings
 
 if TYPE_CHECKING:
@@ -33,12 +34,16 @@ def label(
     weights: Literal["uniform", "guide"] | None = None,
     processes: int | None = None,
     workers: Literal["processes", "ray"] = "processes",
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
 ) -> None:
     """Judge guide paths by an exact planner, in parallel; verdicts that are there are kept.
 
     Args:
         guides: guide path files, .npz.
-        scene: scene that they cross, .json; or a mesh in metres, z up.
+        scene: terrain that they cross: a scene (.json), a mesh, or a map, whose surfaces are
+            found; surfaces of a map, and a terrain that is moved or cropped, are judged as the
+            scene that is written to OUT/scene.json.
         out: folder of the verdict files; the same command continues where it was interrupted.
         planner: planner that judges.
         robot: robot that walks; by default the one that walked the guide paths, or talos where
@@ -59,6 +64,8 @@ def label(
         weights: sl1m: weights of the slacks, uniform by default; guide: the guide path chooses.
         processes: number of processes that work at the same time; all cores by default.
         workers: processes on this machine, or ray: the cluster that RAY_ADDRESS names.
+        reading: what the scene's file does not state itself.
+        search: what counts as a surface, if the scene is a map.
     """
     from time import perf_counter
 
@@ -67,6 +74,7 @@ def label(
 
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.oracle import Oracle
+    from jaxleas.labels.scenes import settled_scene
     from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.labels.walked import read_walks
@@ -89,14 +97,15 @@ def label(
     if processes is not None:
         require_count(processes)
     begun = perf_counter()
-    walked = read_walks(guides, scene, robot)
+    walked = read_walks(guides, lambda: load_scene(scene, reading, search), robot)
     for note in (*walked.notes, settings.note_for(walked.robot)):
         if note:
             print(note)
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
     oracle = Oracle(planner, settings, robot=walked.robot)
-    shards = plan_shards(files, Path(scene).absolute(), oracle, Path(out).absolute())
+    ground = settled_scene(Path(scene).absolute(), Path(out).absolute(), reading, search)
+    shards = plan_shards(files, ground, oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())

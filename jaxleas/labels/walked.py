@@ -1,6 +1,6 @@
 """Guide path files that are to be judged: whose paths they hold, and how these ended."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -9,7 +9,7 @@ from typing import Any
 from jaxleas.contacts import planned_robot
 from jaxleas.files import digest_of
 from jaxleas.guide import read_guide_paths
-from jaxleas.terrain import load_scene
+from jaxleas.terrain import Scene
 from jaxleas.types import Ending, InputError, Verdict
 
 
@@ -44,18 +44,18 @@ class Walks:
         ]
 
 
-def read_walks(guides: Sequence[Path], scene: Path, robot: str | None) -> Walks:
+def read_walks(guides: Sequence[Path], scene: Callable[[], Scene], robot: str | None) -> Walks:
     """Read whose paths the files hold, and how these ended.
 
     Args:
         guides: guide path files.
-        scene: file of the scene that they cross.
+        scene: function that returns the scene that they cross, called only where it is needed.
         robot: robot that a person named; None where nobody did.
 
     Raises:
         InputError: a file cannot be used, or its paths are another robot's than the others'.
     """
-    crossed, walkers, endings = cache(lambda: load_scene(scene)), [], {}
+    crossed, walkers, endings = cache(scene), [], {}
     for path in guides:
         file = read_guide_paths(path)
         walkers.append(planned_robot(file.robot, robot, file.paths, crossed, path))

@@ -17,6 +17,7 @@ from .links import Tile as Tile
 from .loading import has_polygons as has_polygons
 from .loading import is_map as is_map
 from .loading import load_scene as load_scene
+from .loading import require_search_of_map as require_search_of_map
 from .mesh_scene import mesh_to_scene as mesh_to_scene
 from .own_files import Entry as Entry
 from .own_files import pinned as pinned
@@ -25,6 +26,7 @@ from .planes.finding import Cell as Cell
 from .planes.finding import FoundSurfaces as FoundSurfaces
 from .planes.finding import find_surfaces as find_surfaces
 from .planes.picture import draw_surfaces as draw_surfaces
+from .planes.picture import surface_colour as surface_colour
 from .planes.report import surfaces_in_words as surfaces_in_words
 from .planes.settings import PLANE_SEARCH as PLANE_SEARCH
 from .planes.settings import PlaneSearch as PlaneSearch
@@ -65,4 +67,5 @@ from .seeds import EVALUATION_SEED as EVALUATION_SEED
 from .seeds import HELD_OUT_SEED as HELD_OUT_SEED
 from .seeds import MAX_TRAINING_SEED as MAX_TRAINING_SEED
 from .seeds import TUNING_SEED as TUNING_SEED
+from .shaping import cropped as cropped
 from .tiles import TileKind as TileKind

@@ -39,7 +39,7 @@ def load_scene(
         require_surfaces(path, found)
         _LOG.warning("%s: %s", path, surfaces_in_words(found))
         return scene_of_surfaces(found)
-    _require_default(path, search)
+    require_search_of_map(path, search)
     if Path(path).suffix.lower() in SUFFIXES:
         return mesh_to_scene(path, reading=reading)
     refuse_unread(path)
@@ -62,10 +62,14 @@ def is_map(path: str | Path) -> bool:
     return Path(path).suffix.lower() in MAPS or is_bag(Path(path))
 
 
-def _require_default(path: str | Path, search: PlaneSearch) -> None:
-    """Refuse values for a search in a map, where there is no map."""
+def require_search_of_map(path: str | Path, search: PlaneSearch) -> None:
+    """Refuse values for a search in a map, where there is no map.
+
+    Raises:
+        InputError: a value was given that does not apply; the message names it.
+    """
     given = [f"--{name.replace('_', '-')}" for name in search.given]
-    if given:
+    if given and not is_map(path):
         verb = "do" if len(given) > 1 else "does"
         raise InputError(
             f"{' and '.join(given)} {verb} not apply to {path}: surfaces are sought in maps of"

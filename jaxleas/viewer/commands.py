@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jaxleas.configuration import Allow
-from jaxleas.terrain import READING, Reading
+from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     NamedRobot = tuple[str, SteeringEnv, Policy | OnnxPolicy]
 
+MOST_SEARCHED = 4_000_000
+"""Largest number of cells of a map in which surfaces are sought, in about 16 s."""
 FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
@@ -40,7 +42,9 @@ def view(
     host: str = "127.0.0.1",
     port: int = 8080,
     browser: bool = True,
+    surfaces: bool = True,
     reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
     allow: Allow = (),
 ) -> None:
     """Show a terrain in the browser; drive policies on it, play back paths and plans.
@@ -59,11 +63,13 @@ def view(
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
+        surfaces: show the surfaces found in a map, one hue each; of maps up to 4 million cells.
         reading: details that the file does not state itself.
+        search: what counts as a surface, if the terrain is a map.
         allow: conditions of your own that the policies were trained under, to walk them under
             these; by default R* and C.
     """
-    from jaxleas.terrain import import_terrain, read_scene
+    from jaxleas.terrain import import_terrain, is_map, read_scene, require_search_of_map
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
@@ -80,12 +86,15 @@ def view(
     if robot is not None and not clips:
         raise InputError("--robot is played back with --guide or --plan; a policy has its own")
     drawn = _robot_to_draw(clips, robot) if clips else None
+    require_search_of_map(terrain, search)
     ground = import_terrain(terrain, reading)
     if drawn is not None and robot is None:
         _warn_of_height(clips, drawn, ground)
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
+        if surfaces and is_map(terrain):
+            _show_surfaces(server, terrain, ground, search)
         if policies:
             look_near(server, ground, None if start is None else start[:2])
         recorder = Recorder(server)
@@ -106,6 +115,21 @@ def view(
             show(players, recorder)
         else:
             write_recording(record, recorder, players)
+
+
+def _show_surfaces(
+    server: "ViserServer", terrain: Path, ground: "HeightMap", search: PlaneSearch
+) -> None:
+    """Show the surfaces found in a map, and print what was left over."""
+    from jaxleas.terrain import find_surfaces, surfaces_in_words
+    from jaxleas.viewer.ground import draw_surfaces_found
+
+    if ground.heights.size > MOST_SEARCHED:
+        print(f"{terrain}: surfaces are not sought in a map of more than {MOST_SEARCHED} cells")
+        return
+    found = find_surfaces(ground, search)
+    draw_surfaces_found(server, found)
+    print(f"{terrain}: {surfaces_in_words(found)}", flush=True)
 
 
 @contextmanager

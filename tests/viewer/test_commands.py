@@ -195,3 +195,15 @@ def test_ctrl_c_ends_quietly(terrain):
         out, errors = process.communicate(timeout=60)
     assert process.returncode == 0
     assert (out.strip(), errors) == ("", "")
+
+
+def test_the_surfaces_found_in_a_map_are_shown(terrain, tmp_path, capsys):
+    pytest.importorskip("viser")
+    write_guide_paths(tmp_path / "guide.npz", [straight()], ["reached"])
+    for option, shown in (({}, True), ({"surfaces": False}, False)):
+        page = tmp_path / "walk.html"
+        view(terrain, guide=tmp_path / "guide.npz", record=page, **option)
+        assert ("1 surface, " in capsys.readouterr().out) is shown
+        _, sent = messages(page.read_text(encoding="utf-8"))
+        names = {message.get("name") for _, message in sent}
+        assert ({"/surfaces", "/edges"} <= names) is shown

@@ -1,5 +1,6 @@
 """The final check of a path: the exact conditions on the polygons of its terrain."""
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,9 +11,24 @@ from jaxtyping import Bool
 from jaxleas.conditions import exact_collision, exact_strict_reachability
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
-from jaxleas.terrain import READING, Reading, Scene, has_polygons, load_scene
+from jaxleas.terrain import (
+    PLANE_SEARCH,
+    READING,
+    HeightMap,
+    PlaneSearch,
+    Reading,
+    Scene,
+    cropped,
+    find_surfaces,
+    has_polygons,
+    load_scene,
+    surfaces_in_words,
+)
 from jaxleas.types import GuidePath, InputError, RootMotion
 
+_LOG = logging.getLogger("jaxleas")
+AROUND = 1.5
+"""Distance from a path within which surfaces are sought in a map [m]."""
 NEAR = 0.1 * np.arange(1, 11)
 """Distances at which an exactly valid start is sought [m]."""
 
@@ -50,6 +66,25 @@ class ExactCheck:
 def scene_of(terrain: Path, reading: Reading = READING) -> Scene | None:
     """Return the polygons of a terrain file; None for a map or an image, which has none."""
     return load_scene(terrain, reading) if has_polygons(terrain) else None
+
+
+def surfaces_near(
+    height_map: HeightMap, path: GuidePath, search: PlaneSearch = PLANE_SEARCH
+) -> Scene | None:
+    """Return the surfaces found in a map around a path; None where there is none.
+
+    What is found, and what is left over, is said in one line.
+
+    Args:
+        height_map: height map that the path crosses.
+        path: guide path of the root.
+        search: what counts as a surface.
+    """
+    low, high = path.position[:, :2].min(axis=0), path.position[:, :2].max(axis=0)
+    x, y = (tuple(each) for each in np.stack([low - AROUND, high + AROUND], axis=1).tolist())
+    found = find_surfaces(cropped("the map", height_map, (*x, *y)), search)
+    _LOG.warning("around the path: %s", surfaces_in_words(found))
+    return Scene(found.polygons) if found.polygons else None
 
 
 def refusals(
