@@ -14,6 +14,7 @@ from jaxleas.types import InputError
 from tests.contacts.test_from_guide import straight
 
 CELL = 0.02
+CONTACTS = ["contacts", "guide.npz", "--scene", "map.npz", "--out", "plan.json"]
 
 
 def ground() -> HeightMap:
@@ -35,18 +36,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_contacts_are_planned_on_the_surfaces_of_a_map(folder, capsys, caplog):
-    cli.run(
-        [
-            "contacts",
-            "guide.npz",
-            "--scene",
-            "map.npz",
-            "--out",
-            "plan.json",
-            "--problem",
-            "problem.json",
-        ]
-    )
+    cli.run([*CONTACTS, "--problem", "problem.json"])
     assert "mip: feasible" in capsys.readouterr().out
     assert "2 surfaces" in caplog.text
     cli.run(["check", "plan.json", "problem.json"])
@@ -59,25 +49,26 @@ def test_contacts_are_planned_on_the_surfaces_of_a_map(folder, capsys, caplog):
 
 
 def test_options_of_reading_and_searching_reach_the_commands(folder):
-    cli.run(
-        ["contacts", "guide.npz", "--scene", "map.npz", "--out", "plan.json", "--origin", "0,0,-2"]
-    )
-    assert not read_plan("plan.json").feasible  # the ground lies 2 m higher now
+    with pytest.raises(InputError, match="the guide starts where"):  # the ground is 2 m higher
+        cli.run([*CONTACTS, "--origin", "0,0,-2"])
     with pytest.raises(InputError, match="no surface was found"):
-        cli.run(
-            [
-                "contacts",
-                "guide.npz",
-                "--scene",
-                "map.npz",
-                "--out",
-                "plan.json",
-                "--min-area",
-                "100",
-            ]
-        )
-    with pytest.raises(InputError, match="postures"):
-        cli.run(["check", "plan.json", "--guide", "guide.npz", "--scene", "map.npz"])
+        cli.run([*CONTACTS, "--min-area", "100"])
+    check = [
+        "check",
+        "plan.json",
+        "--guide",
+        "guide.npz",
+        "--scene",
+        "map.npz",
+        "--crop",
+        "9",
+        "10",
+        "9",
+        "10",
+    ]
+    cli.run([*CONTACTS, "--planner", "sampling", "--every", "50"])
+    with pytest.raises(InputError, match="--crop leaves"):
+        cli.run([*check, *["--crop", "9", "10", "9", "10"]])
 
 
 def test_labels_keep_the_scene_that_was_found(folder, capsys):
