@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Int
 
-WORTH = 0.9
+WORTH = 0.85
 """Part of a polygon that a single convex one must cover to stand for it."""
 FLAT = 1e-9
 """Area of a triangle from which on its corner counts as bent [cells^2]."""

@@ -11,7 +11,7 @@ from jaxleas.terrain.planes.alike import settle_alike
 from jaxleas.terrain.planes.assigning import assign
 from jaxleas.terrain.planes.growing import flat_windows, grow_regions
 from jaxleas.terrain.planes.joining import joined, regions_of
-from jaxleas.terrain.planes.noise import measured_noise
+from jaxleas.terrain.planes.noise import LEAST_NOISE, measured_noise
 from jaxleas.terrain.planes.pieces import closed, is_wide, pieces
 from jaxleas.terrain.planes.polygons import polygons_of
 from jaxleas.terrain.planes.region import Growth, Region
@@ -25,7 +25,7 @@ WIDTHS = (0.3, 0.2, 0.1)
 """Widths of the windows in which planes are fitted, the largest first [m]."""
 ROUNDS = 2
 """Number of times that cells are assigned again."""
-PART = 0.25
+PART = 0.5
 """Part of the smallest area of a surface below which a convex part of one is left out."""
 
 
@@ -110,7 +110,7 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
     fit = [_fit(ground, each) for each in regions]
     cells = _left_over(ground, scales[-1], np.tan(np.radians(search.max_slope)) * cell)
     surface = np.full(known.shape, -1, np.int32)
-    inset = 0.5 * cell if search.inset is None else search.inset
+    inset = _known_to(cell, noise) if search.inset is None else search.inset
     polygons: Polygons = {}
     good = []
     for region, off in zip(regions, fit, strict=True):
@@ -127,6 +127,11 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
         polygons |= _named(len(good), parts)
         good.append(off)
     return FoundSurfaces(polygons, surface, cells, np.array(good), noise, inset, cell)
+
+
+def _known_to(cell: float, noise: float) -> float:
+    """Return how well an edge is known [m]: to half a cell, and noise blurs it as far again."""
+    return 0.5 * cell + (noise if noise > LEAST_NOISE else 0.0)
 
 
 def _centred(

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-WIGGLE = 1.5
+WIGGLE = 2.0
 """Distance of an outline from a straight edge that may come from the cells alone [cells]."""
 NEARLY_PARALLEL = 0.2
 """Sine of the angle between two edges below which their lines meet too far away."""

@@ -12,7 +12,7 @@ from jaxleas.terrain.planes.outlines import outline
 from jaxleas.terrain.planes.region import Region
 from jaxleas.terrain.planes.rings import rings
 
-FILLED = 0.85, 1.02
+FILLED = 0.8, 1.02
 """Part of an outline's area that its convex parts fill; else the outline crosses itself."""
 
 

@@ -17,8 +17,8 @@ class PlaneSearch:
         min_area: smallest area of a surface [m^2].
         roughness: largest root mean square distance of a surface's cells from its plane [m].
         noise: standard deviation of the map's heights [m]; by default it is measured on the map.
-        inset: length by which surfaces are drawn in from their edges [m]; by default half a cell,
-            as an edge is known no better; half a foot keeps whole soles on the ground.
+        inset: length by which surfaces are drawn in from their edges [m]; by default half a cell
+            and the noise, as edges are known no better; half a foot keeps whole soles on them.
         closing: largest width of holes that a surface closes [m]: cells without a height, and
             things that stand out.
     """

@@ -1,0 +1,86 @@
+"""Measure contacts planned on noisy height maps, and the time that finding surfaces takes.
+
+python -m benchmarks.maps PART ... [--paths N] [--noises N] [--held-out] [--processes N]
+
+Each part replaces its own figures in benchmarks/results/maps.json.
+"""
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+from benchmarks.contacts.rows import Row
+from benchmarks.maps.plans import Judgement, judged_on_map, judged_on_truth
+from benchmarks.maps.speed import planes_seconds
+from benchmarks.maps.walks import KINDS, Walk, walks
+from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from jaxleas.cli_guard import run_guarded
+
+OUT = Path(__file__).resolve().parents[2] / "benchmarks/results/maps.json"
+PARTS = (*KINDS, "speed")
+SHARE, ERROR, SECONDS = 97.0, 0.02, 1.0  # this project's own targets [%], [m], [s]
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Measure the selected parts."""
+    given = _parser().parse_args(arguments)
+    machine = this_machine()
+    for part in given.parts:
+        rows = _speed() if part == "speed" else _plans(part, given)
+        measured = []
+        for row in rows:
+            measured.append(row.measurement(machine))
+            print(f"{row.name}: {measured[-1].value} {row.unit} {list(row.runs)}", flush=True)
+        if not given.held_out:
+            names = {each.name for each in measured}
+            before = read_measurements(given.out) if given.out.is_file() else []
+            kept = [each for each in before if each.name not in names]
+            write_measurements(given.out, [*kept, *measured])
+
+
+def _speed() -> Iterator[Row]:
+    yield Row("planes_seconds", "s", planes_seconds(5), limit=SECONDS)
+
+
+def _plans(kind: str, given: argparse.Namespace) -> Iterator[Row]:
+    """Yield share of plans, worst foot and soles over edges; a run is a seed of the noise."""
+    asked = walks(kind, given.paths, given.held_out)
+    with ProcessPoolExecutor(given.processes, mp_context=get_context("spawn")) as pool:
+        true = list(pool.map(judged_on_truth, asked))
+        runs = [
+            list(pool.map(judged_on_map, asked, [seed] * len(asked)))
+            for seed in range(given.noises)
+        ]
+    allowed = [number for number, each in enumerate(true) if each.planned]
+    print(f"{kind}: {len(asked)} guide paths, {len(allowed)} can be planned on the true scene")
+    shares = [100.0 * sum(run[each].good for each in allowed) / len(allowed) for run in runs]
+    yield Row(f"map_plans_{kind}", "%", shares, limit=SHARE, better="higher")
+    worst = [max(each.worst for each in run) for run in runs]
+    yield Row(f"map_foot_error_worst_{kind}", "m", worst, limit=ERROR)
+    over = [_over(run) for run in runs]
+    yield Row(f"map_soles_over_edges_{kind}", "%", over, rival=_over(true))
+
+
+def _over(run: Sequence[Judgement]) -> float:
+    """Return the share of feet with a corner of the sole over an edge [%]."""
+    return 100.0 * sum(each.over for each in run) / max(sum(each.feet for each in run), 1)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.maps", description=__doc__)
+    add = parser.add_argument
+    add("parts", nargs="+", choices=PARTS)
+    add("--paths", type=int, default=200, help="number of guide paths of a kind")
+    add("--noises", type=int, default=3, help="number of seeds of the noise")
+    add("--held-out", action="store_true", help="on terrain for tuning; nothing is written")
+    add("--processes", type=int, default=2, help="number of processes that plan")
+    add("--out", type=Path, default=OUT)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.argv[0] = "benchmarks.maps"  # as which errors are reported
+    sys.exit(run_guarded(lambda: main(sys.argv[1:])))

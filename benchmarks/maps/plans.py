@@ -1,0 +1,85 @@
+"""A contact plan on the surfaces found in a noisy map, judged on the true scene."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmarks.maps.walks import Walk
+from jaxleas.contacts import ContactPlan, ContactProblem, plan_mip, problem_from_guide
+from jaxleas.contacts.from_guide import NoGroundError
+from jaxleas.contacts.surfaces import make_surface
+from jaxleas.terrain import HeightMap, Scene, find_surfaces, rasterise
+
+CELL, NOISE = 0.02, 0.01  # of the maps [m]
+GOOD = 0.02  # distance from true ground within which a foot stands well [m]
+ROBOT = "talos"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What became of a guide path.
+
+    Attributes:
+        planned: whether there is a plan.
+        worst: largest distance of a foot from true ground [m]; 0 without a plan.
+        feet: number of feet placed.
+        over: number of feet with a corner of the sole more than 2 cm above what is under it.
+    """
+
+    planned: bool
+    worst: float = 0.0
+    feet: int = 0
+    over: int = 0
+
+    @property
+    def good(self) -> bool:
+        """Whether there is a plan whose feet all stand on true ground."""
+        return self.planned and self.worst <= GOOD
+
+
+def noisy_map(walk: Walk, seed: int) -> HeightMap:
+    """Return the height map of a walk's terrain with white noise; the same for all walks on it."""
+    exact = rasterise(walk.scene, CELL)
+    noise = NOISE * np.random.default_rng([seed, walk.number]).normal(size=exact.shape)
+    return replace(exact, heights=(exact.heights + noise).astype(np.float32))
+
+
+def judged_on_truth(walk: Walk) -> Judgement:
+    """Plan a walk on its true scene."""
+    return _judged(walk, walk.scene)
+
+
+def judged_on_map(walk: Walk, seed: int) -> Judgement:
+    """Plan a walk on the surfaces found in a noisy map."""
+    return _judged(walk, Scene(find_surfaces(noisy_map(walk, seed)).polygons))
+
+
+def _judged(walk: Walk, scene: Scene) -> Judgement:
+    try:
+        problem = problem_from_guide(walk.path, scene, ROBOT)
+    except NoGroundError:
+        return Judgement(planned=False)
+    plan = plan_mip(problem, diagnose=False)
+    if not plan.feasible or plan.footholds is None:
+        return Judgement(planned=False)
+    truth = [make_surface(each, "true surface") for each in walk.scene.walkable.values()]
+    off = np.min([each.distance(plan.footholds) for each in truth], axis=0)
+    over = _over_edges(problem, plan, rasterise(walk.scene, 0.01))
+    return Judgement(True, float(off.max()), len(off), over)
+
+
+def _over_edges(problem: ContactProblem, plan: ContactPlan, ground: HeightMap) -> int:
+    """Return the number of feet with a corner of the sole over an edge."""
+    assert plan.footholds is not None
+    count = 0
+    for step, name, foot in zip(problem.steps, plan.surfaces, plan.footholds, strict=True):
+        half = problem.half_sizes[step.foot]
+        signs = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+        forward = np.array([np.cos(step.yaw), np.sin(step.yaw)])
+        axes = np.stack([forward, [-forward[1], forward[0]]])
+        corners = foot[:2] + (signs * half) @ axes
+        normal = problem.surfaces[name].normal
+        sole = foot[2] - (corners - foot[:2]) @ normal[:2] / normal[2]
+        gap = sole - ground.height_at(corners)
+        count += not (gap <= GOOD).all()  # no ground is NaN
+    return count
