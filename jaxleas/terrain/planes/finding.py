@@ -164,7 +164,7 @@ def _owners(ground: Growth, regions: list[Region], scales: list[Windows]) -> np.
 
 def _whole(ground: Growth, owner: Int[np.ndarray, "R C"], widest: int) -> list[Region]:
     """Return regions that hang together, their small holes closed, in the order of their boxes."""
-    found = [closed(each, owner, widest) for each in pieces(regions_of(ground, owner))]
+    found = [closed(ground, each, owner, widest) for each in pieces(regions_of(ground, owner))]
     return sorted(found, key=lambda each: (each.box[0].start, each.box[1].start))
 
 

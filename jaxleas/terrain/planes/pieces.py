@@ -8,8 +8,10 @@ from jaxtyping import Int
 
 from jaxleas.terrain.planes.connected import connected
 from jaxleas.terrain.planes.plane import Box
-from jaxleas.terrain.planes.region import Region
+from jaxleas.terrain.planes.region import Growth, Region
 
+STANDS_OUT = 5.0
+"""Standard deviations from which on a cell's distance from a plane is no noise."""
 WIDE = 100
 """Number of windows whose area is proof enough that a region is not narrow everywhere."""
 
@@ -46,10 +48,11 @@ def pieces(regions: Sequence[Region]) -> list[Region]:
     return found
 
 
-def closed(region: Region, owner: Int[np.ndarray, "R C"], widest: int) -> Region:
-    """Return a region with its holes up to a width, unless other regions lie in them.
+def closed(ground: Growth, region: Region, owner: Int[np.ndarray, "R C"], widest: int) -> Region:
+    """Return a region with its holes up to a width, unless something stands in them.
 
     Args:
+        ground: heights and noise.
         region: cells that hang together.
         owner: number of the region of each cell of the map; 0 for none.
         widest: largest number of cells along the side of a hole.
@@ -59,14 +62,15 @@ def closed(region: Region, owner: Int[np.ndarray, "R C"], widest: int) -> Region
     if widest == 0:
         return region
     outside, _ = connected(~np.pad(region.cells, 1))
-    holes = outside[1:-1, 1:-1]
-    beyond = outside[0, 0]
+    holes, beyond = outside[1:-1, 1:-1], outside[0, 0]
     cells = region.cells.copy()
     for number, part in enumerate(find_objects(holes), start=1):
         if part is None or number == beyond:
             continue
-        hole = holes[part] == number
-        if max(hole.shape) <= widest and not owner[_within(region.box, part)][hole].any():
+        hole, box = holes[part] == number, _within(region.box, part)
+        gap = np.abs(ground.heights[box] - region.plane.over(box)) / ground.noise
+        stands = (owner[box] > 0) | (ground.known[box] & (gap > STANDS_OUT))
+        if max(hole.shape) <= widest and not stands[hole].any():
             cells[part] |= hole
     return replace(region, cells=cells)
 

@@ -19,8 +19,8 @@ class PlaneSearch:
         noise: standard deviation of the map's heights [m]; by default it is measured on the map.
         inset: length by which surfaces are drawn in from their edges [m]; by default half a cell
             and the noise, as edges are known no better; half a foot keeps whole soles on them.
-        closing: largest width of holes that a surface closes [m]: cells without a height, and
-            things that stand out.
+        closing: largest width of holes without heights that a surface closes [m]; what stands out
+            of it by more than noise is left open.
     """
 
     max_slope: float = 45.0
