@@ -37,24 +37,38 @@ class Judgement:
         return self.planned and self.worst <= GOOD
 
 
-def noisy_map(walk: Walk, seed: int) -> HeightMap:
-    """Return the height map of a walk's terrain with white noise; the same for all walks on it."""
-    exact = rasterise(walk.scene, CELL)
-    noise = NOISE * np.random.default_rng([seed, walk.number]).normal(size=exact.shape)
-    return replace(exact, heights=(exact.heights + noise).astype(np.float32))
+class Terrain:
+    """The terrain of a walk: its maps are made once for all walks that follow on it."""
+
+    def __init__(self, scene: Scene, number: int) -> None:
+        self.scene, self.number = scene, number
+        self.truth = [make_surface(each, "true surface") for each in scene.walkable.values()]
+        self.ground = rasterise(scene, 0.5 * CELL)
+        self._found: dict[int, Scene] = {}
+
+    def found(self, seed: int) -> Scene:
+        """Return the surfaces found in the terrain's map with white noise."""
+        if seed not in self._found:
+            exact = rasterise(self.scene, CELL)
+            noise = NOISE * np.random.default_rng([seed, self.number]).normal(size=exact.shape)
+            heights = (exact.heights + noise).astype(np.float32)
+            self._found[seed] = Scene(find_surfaces(replace(exact, heights=heights)).polygons)
+        return self._found[seed]
 
 
-def judged_on_truth(walk: Walk) -> Judgement:
-    """Plan a walk on its true scene."""
-    return _judged(walk, walk.scene)
+_LAST: list[Terrain] = []  # of this process
 
 
-def judged_on_map(walk: Walk, seed: int) -> Judgement:
-    """Plan a walk on the surfaces found in a noisy map."""
-    return _judged(walk, Scene(find_surfaces(noisy_map(walk, seed)).polygons))
+def _terrain(walk: Walk) -> Terrain:
+    if not (_LAST and _LAST[0].number == walk.number):
+        _LAST[:] = [Terrain(walk.scene, walk.number)]
+    return _LAST[0]
 
 
-def _judged(walk: Walk, scene: Scene) -> Judgement:
+def judged(walk: Walk, seed: int | None) -> Judgement:
+    """Plan a walk on its true scene, or on the surfaces found in a map with a seed of noise."""
+    terrain = _terrain(walk)
+    scene = walk.scene if seed is None else terrain.found(seed)
     try:
         problem = problem_from_guide(walk.path, scene, ROBOT)
     except NoGroundError:
@@ -62,9 +76,8 @@ def _judged(walk: Walk, scene: Scene) -> Judgement:
     plan = plan_mip(problem, diagnose=False)
     if not plan.feasible or plan.footholds is None:
         return Judgement(planned=False)
-    truth = [make_surface(each, "true surface") for each in walk.scene.walkable.values()]
-    off = np.min([each.distance(plan.footholds) for each in truth], axis=0)
-    over = _over_edges(problem, plan, rasterise(walk.scene, 0.01))
+    off = np.min([each.distance(plan.footholds) for each in terrain.truth], axis=0)
+    over = _over_edges(problem, plan, terrain.ground)
     return Judgement(True, float(off.max()), len(off), over)
 
 
