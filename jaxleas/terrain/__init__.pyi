@@ -22,9 +22,9 @@ from .mesh_scene import mesh_to_scene as mesh_to_scene
 from .own_files import Entry as Entry
 from .own_files import pinned as pinned
 from .own_files import read_own_terrain as read_own_terrain
-from .planes.finding import Cell as Cell
-from .planes.finding import FoundSurfaces as FoundSurfaces
 from .planes.finding import find_surfaces as find_surfaces
+from .planes.found import Cell as Cell
+from .planes.found import FoundSurfaces as FoundSurfaces
 from .planes.picture import draw_surfaces as draw_surfaces
 from .planes.picture import surface_colour as surface_colour
 from .planes.report import surfaces_in_words as surfaces_in_words

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     NamedRobot = tuple[str, SteeringEnv, Policy | OnnxPolicy]
 
-MOST_SEARCHED = 4_000_000
-"""Largest number of cells of a map in which surfaces are sought, in about 16 s."""
 FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
@@ -74,6 +72,7 @@ def view(
     from jaxleas.viewer.recording import Recorder
     from jaxleas.viewer.server import serving
     from jaxleas.viewer.show import show, write_recording
+    from jaxleas.viewer.surfaces import show_surfaces
 
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
@@ -94,7 +93,7 @@ def view(
     with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
         draw_terrain(server, ground, scene)
         if surfaces and is_map(terrain):
-            _show_surfaces(server, terrain, ground, search)
+            show_surfaces(server, terrain, ground, search)
         if policies:
             look_near(server, ground, None if start is None else start[:2])
         recorder = Recorder(server)
@@ -115,21 +114,6 @@ def view(
             show(players, recorder)
         else:
             write_recording(record, recorder, players)
-
-
-def _show_surfaces(
-    server: "ViserServer", terrain: Path, ground: "HeightMap", search: PlaneSearch
-) -> None:
-    """Show the surfaces found in a map, and print what was left over."""
-    from jaxleas.terrain import find_surfaces, surfaces_in_words
-    from jaxleas.viewer.ground import draw_surfaces_found
-
-    if ground.heights.size > MOST_SEARCHED:
-        print(f"{terrain}: surfaces are not sought in a map of more than {MOST_SEARCHED} cells")
-        return
-    found = find_surfaces(ground, search)
-    draw_surfaces_found(server, found)
-    print(f"{terrain}: {surfaces_in_words(found)}", flush=True)
 
 
 @contextmanager

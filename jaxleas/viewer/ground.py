@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.terrain import FoundSurfaces, HeightMap, Scene, surface_colour
+from jaxleas.terrain import HeightMap, Scene
 from jaxleas.types import is_ground
-from jaxleas.viewer.painted import add_painted, joined, shade
+from jaxleas.viewer.painted import add_painted, shade
 from jaxleas.viewer.terrain_mesh import Mesh, mesh_of_edges, mesh_of_map, mesh_of_polygons
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ DEEP, TALL = np.array([84.0, 99.0, 118.0]), np.array([196.0, 178.0, 142.0])
 OBSTACLE = np.array([168.0, 88.0, 70.0])
 EDGE: Colour = (58, 64, 74)
 EDGE_WIDTH = 0.012  # width of drawn edges [m]
-LIFTED = 0.004  # height of surfaces above the map that they were found in [m]
 LARGEST_VIEW = 9.0
 """Size above which the ground is not shown as a whole when robots are driven [m]."""
 
@@ -53,21 +52,6 @@ def draw_terrain(server: "ViserServer", terrain: HeightMap, scene: Scene | None)
         colours = np.tile(np.array(EDGE, np.float64), (len(edges.vertices), 1))
         add_painted(server, "/edges", edges, colours)
     look_at_all(server, terrain)
-
-
-def draw_surfaces_found(server: "ViserServer", found: FoundSurfaces) -> None:
-    """Draw the surfaces found in a map a little above it, one hue each, with their edges."""
-    if not found.polygons:
-        return
-    above = np.array([0.0, 0.0, LIFTED + found.noise])
-    lifted = {name: each + above for name, each in found.polygons.items()}
-    parts = [mesh_of_polygons([each]) for each in lifted.values()]
-    hues = [255.0 * np.array(surface_colour(found.surface_of(name))) for name in lifted]
-    mesh = joined(parts)
-    colours = np.repeat(hues, [len(each.vertices) for each in parts], axis=0)
-    add_painted(server, "/surfaces", mesh, shade(mesh, colours))
-    edges = mesh_of_edges(list(lifted.values()), EDGE_WIDTH)
-    add_painted(server, "/edges", edges, np.tile(np.array(EDGE, float), (len(edges.vertices), 1)))
 
 
 def paint_sky(server: "ViserServer") -> None:

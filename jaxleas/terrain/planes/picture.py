@@ -7,7 +7,7 @@ import numpy as np
 
 from jaxleas.terrain.draw import draw_height_map, save_picture
 from jaxleas.terrain.height_map import HeightMap
-from jaxleas.terrain.planes.finding import Cell, FoundSurfaces
+from jaxleas.terrain.planes.found import Cell, FoundSurfaces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from jaxleas.terrain.planes.finding import Cell, FoundSurfaces
+from jaxleas.terrain.planes.found import Cell, FoundSurfaces
 from jaxleas.types import InputError
 
 NAMES = {
