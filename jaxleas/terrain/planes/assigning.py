@@ -19,6 +19,7 @@ noise alone is at work, 9 where all are outliers, and about 4 at an edge."""
 KERNEL = np.array([0.25, 0.5, 0.25])
 """Weights of a cell and its neighbours along an axis, for that."""
 
+Cells = tuple[np.ndarray, ...]
 Smoothing = Callable[[np.ndarray], np.ndarray]
 
 
@@ -49,8 +50,9 @@ def assign(ground: Growth, regions: Sequence[Region], smooth: int) -> Int[np.nda
         better &= _around_each(square, known, _close) < NO_PLANE
         best[box][better] = misfit[better]
         owner[box][better] = number
+    cells = np.nonzero(owner)
     for _ in range(smooth // 2):
-        _settle_outliers(ground, [region.plane for region in regions], owner)
+        cells = _settle_outliers(ground, [region.plane for region in regions], owner, cells)
     return owner
 
 
@@ -79,17 +81,21 @@ def _close(values: Float[np.ndarray, "r c"]) -> Float[np.ndarray, "r c"]:
 
 
 def _settle_outliers(
-    ground: Growth, planes: Sequence[Plane], owner: Int[np.ndarray, "R C"]
-) -> None:
-    """Give cells that are off their own plane to the best plane next to them, if one fits."""
+    ground: Growth, planes: Sequence[Plane], owner: Int[np.ndarray, "R C"], cells: Cells
+) -> Cells:
+    """Give cells that are off their own plane to the best plane next to them, if one fits.
+
+    Returns:
+        Rows and columns of those cells: next time, no others can be off.
+    """
     known = np.array([(np.nan, np.nan, np.nan), *planes])  # 0 is no plane
-    row, column = np.nonzero(owner)
+    row, column = cells
 
     def distance(numbers: np.ndarray) -> np.ndarray:
         plane = Plane(*known[numbers].T)  # pyright: ignore[reportArgumentType]
         return np.abs(ground.heights[row, column] - plane.at(row, column)) / ground.noise
 
-    off = distance(owner[row, column]) > OUTLIER + 1.0
+    off = distance(owner[row, column]) > OUTLIER + 1.0  # a NaN is not
     row, column = row[off], column[off]
     around_them = np.pad(owner, 1)
     nearest, chosen = np.full(len(row), OUTLIER), np.zeros(len(row), np.int32)
@@ -100,3 +106,4 @@ def _settle_outliers(
             closer = gap < nearest  # a NaN is not
             nearest[closer], chosen[closer] = gap[closer], number[closer]
     owner[row, column] = chosen
+    return row, column

@@ -46,20 +46,22 @@ def fitted(heights: Float[np.ndarray, "R C"], cells: Bool[np.ndarray, "R C"], bo
     """Return the plane with the least squared vertical distances from cells.
 
     Args:
-        heights: heights of a part of the map [m].
+        heights: heights of a part of the map, none of them NaN [m].
         cells: cells that count; at least three, not all on one line.
         box: part of the map that it is.
     """
     # Sums over rows and columns first: the moments of many cells are those of few sums.
-    some = np.where(cells, heights, 0.0)
-    per_row, per_column = cells.sum(axis=1, dtype=np.float64), cells.sum(axis=0, dtype=np.float64)
+    weight = cells.astype(np.float64)
+    some = weight * heights
+    per_row, per_column = weight.sum(axis=1), weight.sum(axis=0)
+    row_heights, column_heights = some.sum(axis=1), some.sum(axis=0)
     count = per_row.sum()
     row, column = np.arange(len(per_row)), np.arange(len(per_column))
-    middle = np.array([per_row @ row, per_column @ column, some.sum()]) / count
+    middle = np.array([per_row @ row, per_column @ column, row_heights.sum()]) / count
     r, c = row - middle[0], column - middle[1]
     rr, cc = per_row @ r**2, per_column @ c**2
-    rc = r @ np.where(cells, c, 0.0).sum(axis=1)
-    rz, cz = r @ some.sum(axis=1), c @ some.sum(axis=0)
+    rc = r @ np.einsum("rc,c->r", weight, c)
+    rz, cz = r @ row_heights, c @ column_heights
     determinant = rr * cc - rc * rc
     if determinant <= 1e-9 * max(rr * cc, 1.0):  # a line of cells has no slope across it
         along_rows, along_columns = rz / max(rr, 1.0), cz / max(cc, 1.0)

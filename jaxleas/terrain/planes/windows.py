@@ -1,5 +1,6 @@
 """Windowed normals: the plane that fits the heights around each cell best."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,17 +53,17 @@ def fit_windows(
     ones = np.ones(size)
     step = np.arange(size, dtype=np.float64) - size // 2
     weight = known.astype(np.float64)
-    n = _sums(weight, ones, ones)
+    n, r, rr = _sums(weight, (ones, step, step**2), ones)
+    c, rc = _sums(weight, (ones, step), step)
+    (cc,) = _sums(weight, (ones,), step**2)
+    z, rz = _sums(heights, (ones, step), ones)
+    (cz,) = _sums(heights, (ones,), step)
+    (zz,) = _sums(heights**2, (ones,), ones)
     usable = n >= max(6.0, LEAST_KNOWN * size * size)
     n = np.maximum(n, 1.0)
-    r, c = _sums(weight, step, ones) / n, _sums(weight, ones, step) / n
-    z = _sums(heights, ones, ones) / n
-    rr = _sums(weight, step**2, ones) / n - r * r
-    cc = _sums(weight, ones, step**2) / n - c * c
-    rc = _sums(weight, step, step) / n - r * c
-    rz = _sums(heights, step, ones) / n - r * z
-    cz = _sums(heights, ones, step) / n - c * z
-    zz = _sums(heights**2, ones, ones) / n - z * z
+    r, c, z = r / n, c / n, z / n
+    rr, cc, rc = rr / n - r * r, cc / n - c * c, rc / n - r * c
+    rz, cz, zz = rz / n - r * z, cz / n - c * z, zz / n - z * z
     determinant = rr * cc - rc * rc
     usable &= determinant > 1e-6
     determinant = np.where(usable, determinant, np.nan)
@@ -79,10 +80,13 @@ def fit_windows(
 
 
 def _sums(
-    values: Float[np.ndarray, "R C"], over_rows: np.ndarray, over_columns: np.ndarray
-) -> Float[np.ndarray, "R C"]:
-    """Return weighted sums over the window of each cell; nothing lies beyond the map."""
+    values: Float[np.ndarray, "R C"], over_rows: Sequence[np.ndarray], over_columns: np.ndarray
+) -> list[Float[np.ndarray, "R C"]]:
+    """Return sums over the window of each cell, one for each of the weights over rows.
+
+    Nothing lies beyond the map.
+    """
     from scipy.ndimage import correlate1d
 
     partial = correlate1d(values, over_columns, axis=1, mode="constant")
-    return correlate1d(partial, over_rows, axis=0, mode="constant")
+    return [correlate1d(partial, weights, axis=0, mode="constant") for weights in over_rows]
