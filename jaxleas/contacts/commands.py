@@ -96,6 +96,8 @@ def check(
         search: what counts as a surface, if the scene is a map.
     """
     read = read_plan(plan)
+    if scene is None and (reading != READING or search.given):
+        raise InputError("options of a terrain file were given without --scene, which they are of")
     if picture is not None:
         _require_writable_names(Path("plan.json"), picture)
     ground = None if scene is None else load_scene(scene, reading, search)

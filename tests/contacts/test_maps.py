@@ -71,6 +71,12 @@ def test_options_of_reading_and_searching_reach_the_commands(folder):
         cli.run([*check, *["--crop", "9", "10", "9", "10"]])
 
 
+def test_options_of_a_scene_need_a_scene(folder):
+    cli.run([*CONTACTS, "--problem", "problem.json"])
+    with pytest.raises(InputError, match="without --scene"):
+        cli.run(["check", "plan.json", "problem.json", "--inset", "0.1"])
+
+
 def test_labels_keep_the_scene_that_was_found(folder, capsys):
     label = "label guide.npz --scene map.npz --planner mip --out labels --processes 1"
     cli.run(label.split())

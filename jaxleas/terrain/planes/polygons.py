@@ -11,6 +11,7 @@ from jaxleas.terrain.planes.convex_parts import area, convex_parts, distinct
 from jaxleas.terrain.planes.outlines import outline
 from jaxleas.terrain.planes.region import Region
 from jaxleas.terrain.planes.rings import rings
+from jaxleas.terrain.polygons import MIN_AREA
 
 FILLED = 0.8, 1.02
 """Part of an outline's area that its convex parts fill; else the outline crosses itself."""
@@ -36,7 +37,7 @@ def polygons_of(
         if parts is None:  # the outline of the cells never crosses itself
             parts = _parts([ring.astype(np.float64) for ring in around]) or []
         found += parts
-    enough = least / frame.resolution**2
+    enough = max(least, MIN_AREA) / frame.resolution**2
     return [_lifted(region, frame, part) for part in found if area(part) >= enough]
 
 
