@@ -127,8 +127,15 @@ def test_an_option_of_several_values_may_be_given_several_times() -> None:
 
 
 LOAD_NO_CODE = {
-    *("terrain show", "terrain import", "terrain generate", "terrain scenario"),
-    *("plan", "check", "contacts", "label"),  # a planner is named on the command line itself
+    *("terrain show", "terrain convert", "terrain surfaces"),
+    *("terrain generate", "terrain scenario"),
+    *(
+        "plan",
+        "check",
+        "contacts",
+        "contacts export",
+        "label",
+    ),  # a planner is named on the command line itself
     *("runs", "compare"),  # plain values
 }
 

@@ -91,7 +91,7 @@ def test_a_run_folder_stands_for_its_best_policy(files, tmp_path):
         ({"policy": "map.npz"}, "lacks the array"),
         ({"policy": "."}, "not a run folder"),
         ({"terrain": "nothing.npz"}, "does not exist"),
-        ({"terrain": "cloud.las"}, "unknown terrain file type"),
+        ({"terrain": "cloud.las"}, "is a cloud of points that is not read"),
         ({"terrain": "policy.npz"}, "lacks the array"),
         ({"queries": "nothing.json"}, "does not exist"),
         ({"out": "out.csv"}, "written as .npz"),

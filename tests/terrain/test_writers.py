@@ -236,7 +236,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path, scene_fi
         convert(scene_file, out=tmp_path / "bag")
     with pytest.raises(InputError, match=r"--resolution does not apply to .*scene\.json"):
         convert(scene_file, out=tmp_path / "a.json", reading=Reading(resolution=0.1))
-    with pytest.raises(InputError, match="is a map of heights"):
+    with pytest.raises(InputError, match="no surface was found in the map"):
         convert(map_file, out=tmp_path / "a.json")
     for name in ("x.bag", "x.mcap", "x", "x.tif", "x.stl", "x.xml"):
         with pytest.raises(InputError, match=r"cannot write .*map\.npz/x"):
