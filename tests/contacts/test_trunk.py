@@ -54,7 +54,7 @@ def test_the_first_collision_is_that_of_a_slow_twin(seed) -> None:
 def test_a_wall_across_the_path_stops_it(planner) -> None:
     path, clear = straight(2.5), straight(1.0)
     scene = Scene(flat().surfaces, {"sheet": SHEET})
-    verdict, free = judge(planner, scene, [path, clear])
+    verdict, free = judge(planner, scene, [path, clear], robot="talos")
     assert free.success
     assert (verdict.decided, verdict.success, verdict.cause) == (True, False, "collision")
     reach = load_talos().trunk[0].high[0]
@@ -65,9 +65,11 @@ def test_a_wall_across_the_path_stops_it(planner) -> None:
 
 @BOTH
 def test_the_trunk_in_a_wall_at_the_start_reaches_nothing(planner) -> None:
-    (verdict,) = judge(planner, wall(), [straight(1.0, start=2.1)])
+    (verdict,) = judge(planner, wall(), [straight(1.0, start=2.1)], robot="talos")
     assert (verdict.cause, verdict.last_index, verdict.steps) == ("collision", -1, 0)
-    (verdict,) = judge(planner, wall(), [straight(0.3, start=1.7)])  # before the first step's end
+    (verdict,) = judge(
+        planner, wall(), [straight(0.3, start=1.7)], robot="talos"
+    )  # before the first step's end
     assert (verdict.cause, verdict.last_index, verdict.steps) == ("collision", 0, 0)
 
 
@@ -78,10 +80,10 @@ def test_verdicts_without_obstacles_are_those_of_before(planner, monkeypatch) ->
     assert not exact_collision(
         load_talos(), stairs().polygons, paths[1].position, paths[1].yaw
     ).all()
-    found = judge(planner, stairs(), paths)
+    found = judge(planner, stairs(), paths, robot="talos")
     assert all(trunk_collision(load_talos(), stairs(), each) is None for each in paths)
     monkeypatch.setattr("jaxleas.contacts.programs.judging.trunk_collision", lambda *given: None)
-    for one, other in zip(found, judge(planner, stairs(), paths), strict=True):
+    for one, other in zip(found, judge(planner, stairs(), paths, robot="talos"), strict=True):
         assert (one.success, one.last_index, one.cause) == (
             other.success,
             other.last_index,
@@ -149,5 +151,5 @@ def test_a_wall_without_thickness_of_a_mesh_stands_in_the_way(shared) -> None:
     (query,) = json.loads((mesh.parent / "q_wall.json").read_text())
     x, y, z = query["position"]
     path = straight(abs(query["goal"][0] - x), height=z, y=y, start=min(x, query["goal"][0]))
-    (verdict,) = judge("mip", load_scene(mesh), [path])
+    (verdict,) = judge("mip", load_scene(mesh), [path], robot="talos")
     assert (verdict.decided, verdict.success, verdict.cause) == (True, False, "collision")

@@ -190,10 +190,12 @@ def test_ctrl_c_ends_quietly(terrain):
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
         assert process.stdout is not None
-        assert "Ctrl-C ends" in process.stdout.readline()
+        said = [process.stdout.readline(), process.stdout.readline()]
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate(timeout=60)
     assert process.returncode == 0
+    assert "1 surface, " in said[0]
+    assert "Ctrl-C ends" in said[1]
     assert (out.strip(), errors) == ("", "")
 
 
