@@ -16,6 +16,7 @@ from .exact import exact_collision as exact_collision
 from .exact import exact_reachability as exact_reachability
 from .exact import exact_strict_reachability as exact_strict_reachability
 from .exact import reconfirm as reconfirm
+from .exact_on_scene import EXACT_TWINS as EXACT_TWINS
 from .footprint import UNDER_ROOT as UNDER_ROOT
 from .footprint import footprint_points as footprint_points
 from .footprint import is_under_root as is_under_root

@@ -178,8 +178,7 @@ def judge_exact(
                     bookkeeping.on_guides(cell, method, planner, 0)
                     if walked is None:
                         walked = walks(grounds, starts, suite.steps_of(cell))
-                        if cell.exactly:
-                            walked = judged_exactly(env.robot, cell, walked)
+                        walked = judged_exactly(env.robot, cell, walked)
                     if planner is None:
                         result = summarise(cell, method, walked, time_step)
                     else:

@@ -48,8 +48,7 @@ def judge(
                 f" {name} on {cell.name} at {cell.yaw:.0f} deg"
             )
             walked = roll_out_cell(env, grounds, method, starts, suite.steps_of(cell))
-            if cell.exactly:
-                walked = judged_exactly(env.robot, cell, walked)
+            walked = judged_exactly(env.robot, cell, walked)
             results.append(summarise(cell, name, walked, env.config.limits.time_step))
     return results
 

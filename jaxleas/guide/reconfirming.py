@@ -1,17 +1,13 @@
 """Walks on a height map, judged once more on the polygons of the terrain."""
 
 import logging
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from jaxleas.conditions import (
-    exact_collision,
-    exact_reachability,
-    exact_strict_reachability,
-)
+from jaxleas.conditions import EXACT_TWINS
 from jaxleas.guide.failures import EXACTLY, Failure
 from jaxleas.guide.files import Reason
 from jaxleas.guide.roadmaps.exact import scene_of
@@ -22,18 +18,6 @@ from jaxleas.types import GuidePath, InputError
 
 _LOG = logging.getLogger("jaxleas")
 _Row = tuple[GuidePath, Reason, Failure | None]
-TWINS: Mapping[str, Callable[[Robot, Scene, np.ndarray, np.ndarray], np.ndarray]] = {
-    "reachability": lambda robot, scene, position, yaw: exact_reachability(
-        robot, scene.walkable.values(), position, yaw
-    ),
-    "strict_reachability": lambda robot, scene, position, yaw: exact_strict_reachability(
-        robot, scene.walkable.values(), position, yaw
-    ),
-    "collision": lambda robot, scene, position, yaw: exact_collision(
-        robot, scene.polygons, position, yaw
-    ),
-}
-"""Where the exact twin of each condition of the package holds, by the condition's name."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +61,7 @@ def reconfirm_walks(
     ends = np.cumsum([len(path) for path in walked.paths])[:-1]
     refused = {
         name: np.split(~holds(robot, scene, position, yaw), ends)
-        for name, holds in TWINS.items()
+        for name, holds in EXACT_TWINS.items()
         if name in conditions
     }
     judged = [

@@ -8,7 +8,7 @@ import jax
 import numpy as np
 from jaxtyping import Bool
 
-from jaxleas.conditions import exact_collision, exact_strict_reachability
+from jaxleas.conditions import EXACT_TWINS, STANDARD
 from jaxleas.guide.places import HEADINGS, Places
 from jaxleas.robots import Robot
 from jaxleas.terrain import (
@@ -97,8 +97,7 @@ def refusals(
         scene: scene whose surfaces support contacts, and whose polygons all block.
         path: guide path of the root.
     """
-    reached = exact_strict_reachability(robot, scene.walkable.values(), path.position, path.yaw)
-    free = exact_collision(robot, scene.polygons, path.position, path.yaw)
+    reached, free = (EXACT_TWINS[name](robot, scene, path.position, path.yaw) for name in STANDARD)
     return ~reached, ~free
 
 
