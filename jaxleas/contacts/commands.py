@@ -214,7 +214,7 @@ def _require_writable_names(out: Path, picture: Path | None) -> None:
     if Path(out).suffix != ".json":
         raise InputError(f"--out {out}: contact plans are written as .json")
     if picture is not None:
-        from jaxleas.contacts.pictures import require_picture
+        from jaxleas.terrain import require_picture
 
         require_picture(picture)
 

@@ -11,7 +11,8 @@ from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.files import atomic_path
 from jaxleas.robots import LIMB_OF_FOOT
-from jaxleas.types import GuidePath, InputError
+from jaxleas.terrain import require_picture
+from jaxleas.types import GuidePath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,12 +26,6 @@ VIEWS = {"above": (0, 1), "from the side": (0, 2)}
 MOST_MARKED = 120
 """A guide with more configurations is drawn as a line without dots."""
 AROUND = 0.4  # margin shown beyond footholds and roots [m]
-
-
-def require_picture(path: str | Path) -> None:
-    """Refuse a picture's name whose type cannot be drawn."""
-    if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
 
 
 def draw_plan(

@@ -56,11 +56,11 @@ def rollout(
     from jaxleas.guide.failures import failures_on_map
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
     from jaxleas.guide.loading import load_policy
-    from jaxleas.guide.picture import draw_guide_paths, require_picture
+    from jaxleas.guide.picture import draw_guide_paths
     from jaxleas.guide.reconfirming import Walked, polygons_of, reconfirm_walks
     from jaxleas.guide.rollout import paths
     from jaxleas.guide.rollout_report import describe_walks, failure_lines, goals_off_the_map
-    from jaxleas.terrain import import_terrain
+    from jaxleas.terrain import import_terrain, require_picture
 
     asked = read_queries(queries)
     _require_sizes(steps, len(asked), out)

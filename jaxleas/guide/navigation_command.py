@@ -67,7 +67,7 @@ def navigate(
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.
     """
     from jaxleas.guide.cut_off import require_not_cut_off
-    from jaxleas.guide.picture import draw_navigation, require_picture
+    from jaxleas.guide.picture import draw_navigation
     from jaxleas.guide.place_refusal import require_valid
     from jaxleas.guide.roadmaps import Budget, Places
     from jaxleas.guide.roadmaps.exact import (
@@ -79,7 +79,7 @@ def navigate(
     from jaxleas.guide.roadmaps.ompl import import_ompl
     from jaxleas.guide.roadmaps.tuning import make_navigator
     from jaxleas.guide.starts import start_motion
-    from jaxleas.terrain import import_terrain, is_map, require_search_of_map
+    from jaxleas.terrain import import_terrain, is_map, require_picture, require_search_of_map
     from jaxleas.xla import keep_compiled_programs
 
     start, yaw = _place("--from", from_, may_turn=True)

@@ -8,8 +8,8 @@ import numpy as np
 
 from jaxleas.files import atomic_path
 from jaxleas.guide.files import Reason
-from jaxleas.terrain import HeightMap
-from jaxleas.types import GuidePath, InputError, Query
+from jaxleas.terrain import HeightMap, require_picture
+from jaxleas.types import GuidePath, Query
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,12 +19,6 @@ PATH, GOAL = "tab:blue", "red"
 ARROWS_EVERY = 15  # configurations between two arrows
 ARROW_LENGTH = 0.2  # [m]
 MOST_PATHS = 200  # more paths would hide each other
-
-
-def require_picture(path: str | Path) -> None:
-    """Refuse the name of a picture whose type cannot be drawn."""
-    if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(f"{path}: pictures are .png, .svg or .pdf, not '{Path(path).suffix}'")
 
 
 def draw_navigation(

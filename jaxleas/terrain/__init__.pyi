@@ -3,6 +3,7 @@ from .atlas import make_atlas as make_atlas
 from .config import GeneratorConfig as GeneratorConfig
 from .draw import VOID_COLOUR as VOID_COLOUR
 from .draw import draw_height_map as draw_height_map
+from .draw import require_picture as require_picture
 from .generator import Arena as Arena
 from .generator import generate_arena as generate_arena
 from .height_map import HeightMap as HeightMap
