@@ -22,7 +22,14 @@ from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
 from jaxleas.contacts.registry import DEFAULT_PLANNER, PLANNERS, PlannerName, find_planner
-from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading, load_scene
+from jaxleas.terrain import (
+    PLANE_SEARCH,
+    READING,
+    PlaneSearch,
+    Reading,
+    load_scene,
+    require_picture,
+)
 from jaxleas.types import InputError
 
 __all__ = ["NotCertifiedError", "check", "contacts", "plan"]
@@ -214,8 +221,6 @@ def _require_writable_names(out: Path, picture: Path | None) -> None:
     if Path(out).suffix != ".json":
         raise InputError(f"--out {out}: contact plans are written as .json")
     if picture is not None:
-        from jaxleas.terrain import require_picture
-
         require_picture(picture)
 
 

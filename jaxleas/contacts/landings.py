@@ -8,8 +8,8 @@ from jaxtyping import Float
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.stances import contact_pose
-from jaxleas.robots import Robot, load_robot
-from jaxleas.types import InputError, Pose
+from jaxleas.robots import Robot, known_robot
+from jaxleas.types import Pose
 
 TOUCHING = 1e-3  # an effector this near to a surface stands on it [m]
 UP = np.array([0.0, 0.0, 1.0])
@@ -48,7 +48,7 @@ def landings_of(problem: ContactProblem, plan: ContactPlan) -> tuple[Landing, ..
         problem: contact problem.
         plan: plan of the problem; one that stops early gives the contacts up to its end.
     """
-    robot = _robot_of(problem)
+    robot = known_robot(problem.robot)  # with polytopes of its own it may be of any
     landings = [
         Landing(
             name,
@@ -65,13 +65,6 @@ def landings_of(problem: ContactProblem, plan: ContactPlan) -> tuple[Landing, ..
         pose = contact_pose(point, step.yaw, normal)
         landings.append(Landing(step.foot, pose, _half_size(robot, problem, step.foot), number + 1))
     return tuple(landings)
-
-
-def _robot_of(problem: ContactProblem) -> Robot | None:
-    try:
-        return load_robot(problem.robot)
-    except InputError:  # a contact problem with polytopes of its own may be of any robot
-        return None
 
 
 def _normal_at(problem: ContactProblem, point: Float[np.ndarray, " 3"]) -> np.ndarray:

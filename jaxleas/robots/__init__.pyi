@@ -1,4 +1,5 @@
 from .catalogue import DEFAULT_ROBOT as DEFAULT_ROBOT
+from .catalogue import known_robot as known_robot
 from .catalogue import load_robot as load_robot
 from .catalogue import robot_names as robot_names
 from .chain import SerialChain as SerialChain

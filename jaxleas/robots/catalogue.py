@@ -51,6 +51,17 @@ def load_robot(name: str) -> Robot:
     )
 
 
+def known_robot(name: str) -> Robot | None:
+    """Return a robot as `load_robot` does; None where it is not known here.
+
+    A file may be of any robot, as long as it states all that is needed of it.
+    """
+    try:
+        return load_robot(name)
+    except InputError:
+        return None
+
+
 @cache
 def _shipped(name: str) -> Robot:
     with resources.as_file(resources.files("jaxleas.robots") / "data" / f"{name}.json") as path:

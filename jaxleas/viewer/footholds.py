@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jaxleas.contacts import ContactPlan, ContactProblem, landings_of
-from jaxleas.robots import Robot, load_robot
-from jaxleas.types import InputError, Pose
+from jaxleas.robots import Robot, known_robot
+from jaxleas.types import Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ def footholds_of(
         plan: plan of the problem; one that stops early gives the footholds up to its end.
         seconds_per_step: duration of a step [s]: a contact plan has no times.
     """
-    robot = _robot_of(problem)
+    robot = known_robot(problem.robot)  # with polytopes of its own it may be of any
     landings = landings_of(problem, plan)
     footholds = []
     for index, each in enumerate(landings):
@@ -56,13 +56,6 @@ def footholds_of(
             )
         )
     return tuple(footholds)
-
-
-def _robot_of(problem: ContactProblem) -> Robot | None:
-    try:
-        return load_robot(problem.robot)
-    except InputError:  # a contact problem with polytopes of its own may be of any robot
-        return None
 
 
 def _limb_index(robot: Robot | None, problem: ContactProblem, name: str) -> int:

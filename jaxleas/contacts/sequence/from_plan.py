@@ -11,7 +11,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.sequence.values import ContactSequence, Landing
 from jaxleas.contacts.stances import contact_pose, stances_of
 from jaxleas.contacts.surfaces import ContactSurface
-from jaxleas.robots import Effector, Robot, load_robot
+from jaxleas.robots import Effector, Robot, known_robot
 from jaxleas.types import Contact, InputError, Stance
 
 
@@ -90,7 +90,6 @@ def _on_whole(problem: ContactProblem, contact: Contact) -> Contact:
 
 
 def _known(robot: str) -> dict[str, Effector]:
-    try:
-        return {each.name: each for each in load_robot(robot).effectors}
-    except InputError:  # the problem says all that is needed of it
-        return {}
+    """Return the effectors of a robot by name; none of one that is not known here."""
+    known = known_robot(robot)
+    return {} if known is None else {each.name: each for each in known.effectors}

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from jaxleas.robots import load_robot
+from jaxleas.robots import known_robot
 from jaxleas.terrain import PUBLISHED, GeneratorConfig, scale_for, scaled
-from jaxleas.types import InputError
 
 LOWEST, HIGHEST = -1.4, -0.2
 """Bounds to which Talos's heights are clipped, relative to its root (T table 3.1) [m]."""
@@ -19,10 +18,8 @@ def suited_to(robot: str) -> dict[str, Any]:
     Args:
         robot: name of the robot, or path of its file.
     """
-    try:
-        scale = scale_for(load_robot(robot))
-    except InputError:
-        return {}
+    known = known_robot(robot)
+    scale = PUBLISHED if known is None else scale_for(known)
     if scale == PUBLISHED:
         return {}
     low, high = (round(scale.leg * height, 3) for height in (LOWEST, HIGHEST))
