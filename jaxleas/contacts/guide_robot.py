@@ -28,7 +28,7 @@ def read_asked(
         guide: file of the guide path.
         query: number of the path in the file.
         scene: scene that it crosses.
-        robot: robot that a person named; None where nobody did.
+        robot: robot that a person named; None if none was named.
 
     Raises:
         InputError: a file cannot be used, or the path is another robot's.

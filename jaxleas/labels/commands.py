@@ -67,6 +67,7 @@ def label(
         reading: what the scene's file does not state itself.
         search: what counts as a surface, if the scene is a map.
     """
+    from functools import cache
     from time import perf_counter
 
     from rich.console import Console
@@ -74,7 +75,7 @@ def label(
 
     from jaxleas.labels.label import label_shards, plan_shards
     from jaxleas.labels.oracle import Oracle
-    from jaxleas.labels.scenes import settled_scene
+    from jaxleas.labels.scenes import settled_scene, states_itself
     from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
     from jaxleas.labels.walked import read_walks
@@ -97,14 +98,17 @@ def label(
     if processes is not None:
         require_count(processes)
     begun = perf_counter()
-    walked = read_walks(guides, lambda: load_scene(scene, reading, search), robot)
+    crossed = cache(lambda: load_scene(scene, reading, search))
+    walked = read_walks(guides, crossed, robot)
     for note in (*walked.notes, settings.note_for(walked.robot)):
         if note:
             print(note)
     # Absolute: a worker elsewhere has another working directory.
     files = [Path(each).absolute() for each in guides]
     oracle = Oracle(planner, settings, robot=walked.robot)
-    ground = settled_scene(Path(scene).absolute(), Path(out).absolute(), reading, search)
+    ground = Path(scene).absolute()
+    if not states_itself(ground, reading, search):
+        ground = settled_scene(crossed(), ground, Path(out).absolute())
     shards = plan_shards(files, ground, oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)

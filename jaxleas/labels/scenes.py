@@ -10,7 +10,6 @@ from jaxleas.terrain import (
     Reading,
     Scene,
     is_map,
-    load_scene,
     read_scene,
     write_scene,
 )
@@ -20,24 +19,32 @@ NAME = "scene.json"
 _ROUNDED = 2e-6  # coordinates in files are rounded to a micrometre [m]
 
 
-def settled_scene(scene: Path, out: Path, reading: Reading, search: PlaneSearch) -> Path:
-    """Return a file of polygons that states everything itself.
-
-    The surfaces of a map, and a terrain that is moved, cropped or scaled, are written to the folder
-    of the verdicts, where workers find them, and whatever reads the verdicts later.
+def states_itself(scene: Path, reading: Reading, search: PlaneSearch) -> bool:
+    """Return whether workers read the same polygons from a terrain file without being told more.
 
     Args:
         scene: scene, mesh or map that guide paths cross.
-        out: folder of the verdicts.
         reading: what the file does not state itself.
         search: what counts as a surface in a map.
+    """
+    return not is_map(scene) and reading == READING and not search.given
+
+
+def settled_scene(found: Scene, scene: Path, out: Path) -> Path:
+    """Return a file of polygons in the folder of the verdicts.
+
+    The surfaces of a map, and a terrain that is moved, cropped or scaled, are written there, where
+    workers find them, and whatever reads the verdicts later.
+
+    Args:
+        found: polygons of the terrain.
+        scene: file that they were read from, for messages.
+        out: folder of the verdicts.
 
     Raises:
-        InputError: the file cannot be used, or the folder holds another scene.
+        InputError: the folder cannot be made, or holds another scene.
     """
-    if not is_map(scene) and reading == READING and not search.given:
-        return scene
-    found, path = load_scene(scene, reading, search), out / NAME
+    path = out / NAME
     if path.exists():
         if not _is_same(read_scene(path), found):
             raise InputError(

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -49,16 +48,16 @@ def read_walks(guides: Sequence[Path], scene: Callable[[], Scene], robot: str | 
 
     Args:
         guides: guide path files.
-        scene: function that returns the scene that they cross, called only where it is needed.
-        robot: robot that a person named; None where nobody did.
+        scene: function that returns the scene that they cross, called for each file that needs it.
+        robot: robot that a person named; None if none was named.
 
     Raises:
         InputError: a file cannot be used, or its paths are another robot's than the others'.
     """
-    crossed, walkers, endings = cache(scene), [], {}
+    walkers, endings = [], {}
     for path in guides:
         file = read_guide_paths(path)
-        walkers.append(planned_robot(file.robot, robot, file.paths, crossed, path))
+        walkers.append(planned_robot(file.robot, robot, file.paths, scene, path))
         endings[digest_of(path)] = file.endings
         if walkers[-1].name != walkers[0].name:
             raise InputError(

@@ -94,7 +94,7 @@ def walker_of(recorded: RecordedRobot | None, given: str | None, where: object) 
 
     Args:
         recorded: robot that the file records; None in files from before.
-        given: robot that a person named; None where nobody did.
+        given: robot that a person named; None if none was named.
         where: name of the file, for messages.
 
     Raises:
