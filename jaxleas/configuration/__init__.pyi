@@ -7,6 +7,7 @@ from .bounds import Positive as Positive
 from .bounds import Seed as Seed
 from .bounds import Whole as Whole
 from .fields import fields_of as fields_of
+from .fields import meant as meant
 from .fields import nearest as nearest
 from .former import present_name as present_name
 from .former import with_present_names as with_present_names

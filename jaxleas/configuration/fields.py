@@ -101,6 +101,12 @@ def _last(name: str) -> str:
     return name.rpartition(".")[2]
 
 
+def meant(name: str, names: Collection[str]) -> str:
+    """Return the end of a message about a wrong name: the nearest of `names`, if one is near."""
+    close = nearest(name, names)
+    return "" if close is None else f"; perhaps you meant {close}"
+
+
 def hint(name: str, names: list[str], dashes: int = 0) -> str:
     """Return the end of a message about an unknown field: the nearest of `names`, or all."""
     close = nearest(name, names)

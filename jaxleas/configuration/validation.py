@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from jaxleas.configuration.fields import fields_of, hint, nearest
+from jaxleas.configuration.fields import fields_of, hint, meant
 from jaxleas.configuration.former import with_present_names
 from jaxleas.configuration.layers import Layers, merge
 from jaxleas.configuration.strict import Strict
@@ -59,8 +59,7 @@ def _sentence(model: type[Strict], layers: Layers, error: Any) -> str:
     if isinstance(error["input"], dict) or not parts:  # a rule about several fields at once
         return f"{source}: {f'{name}: ' if name else ''}{problem}"
     if error["type"] == "literal_error":
-        close = nearest(str(error["input"]), re.findall("'([^']+)'", error["ctx"]["expected"]))
-        problem += f"; perhaps you meant {close}" if close else ""
+        problem += meant(str(error["input"]), re.findall("'([^']+)'", error["ctx"]["expected"]))
     return f"{source}: {name} is {error['input']!r}, but {problem}"
 
 

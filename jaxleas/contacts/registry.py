@@ -5,7 +5,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
-from jaxleas.configuration import Registry, is_own, misspelt, nearest
+from jaxleas.configuration import Registry, is_own, meant, misspelt
 from jaxleas.contacts.own_planner import JudgedByOwn, OwnPlanner
 from jaxleas.contacts.planner import Measure, Planner
 from jaxleas.types import InputError
@@ -110,9 +110,8 @@ def require_built_in(name: str) -> str:
         ValueError: the name is not a built-in planner's.
     """
     if name not in PLANNERS:
-        close = nearest(name, PLANNERS.targets)
-        meant = f"; perhaps you meant {close}" if close else ""
+        near = meant(name, PLANNERS.targets)
         raise ValueError(
-            f"there is no planner {name!r} here{meant}; there are {', '.join(PLANNERS)}"
+            f"there is no planner {name!r} here{near}; there are {', '.join(PLANNERS)}"
         )
     return name

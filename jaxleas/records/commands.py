@@ -7,7 +7,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, Literal
 
-from jaxleas.configuration import nearest, parse_yaml
+from jaxleas.configuration import meant, parse_yaml
 from jaxleas.files import write_bytes, write_json, write_text
 from jaxleas.records.comparison import compare_runs
 from jaxleas.records.finding import find_runs
@@ -131,9 +131,7 @@ def _conditions(where: Sequence[str]) -> dict[str, Any]:
         if not equals:
             raise InputError(f"--where {each}: conditions look like ppo.discount=0.99")
         if key not in known:
-            near = nearest(key, known)
-            hint = f"; perhaps you meant {near}" if near else ""
-            raise InputError(f"--where {each}: there is no field {key}{hint}")
+            raise InputError(f"--where {each}: there is no field {key}{meant(key, known)}")
         try:
             wanted[key] = parse_yaml(text)
         except ValueError as error:

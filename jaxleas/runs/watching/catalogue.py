@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from jaxleas.configuration import nearest
+from jaxleas.configuration import meant
 from jaxleas.runs.watching.watcher import Watcher
 from jaxleas.types import InputError
 
@@ -27,10 +27,9 @@ def require_watchers(names: Sequence[str]) -> None:
     """
     for name in names:
         if name not in WATCHERS:
-            close = nearest(name, WATCHERS)
-            meant = f"; perhaps you meant {close}" if close else ""
+            near = meant(name, WATCHERS)
             raise InputError(
-                f"watch: there is no watcher {name!r}{meant}; there are {', '.join(WATCHERS)}"
+                f"watch: there is no watcher {name!r}{near}; there are {', '.join(WATCHERS)}"
             )
         client, _, _ = WATCHERS[name]
         try:
