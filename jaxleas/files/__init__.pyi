@@ -1,5 +1,6 @@
 from .atomic import atomic_path as atomic_path
 from .atomic import sweep_temporaries as sweep_temporaries
+from .atomic import to_json as to_json
 from .atomic import write_bytes as write_bytes
 from .atomic import write_json as write_json
 from .atomic import write_npz as write_npz

@@ -60,9 +60,14 @@ def write_text(path: str | Path, text: str) -> None:
     write_bytes(path, text.encode())
 
 
+def to_json(value: Any) -> str:
+    """Return the text of a JSON file; NaN and infinity are refused, since JSON has neither."""
+    return json.dumps(value, indent=2, allow_nan=False) + "\n"
+
+
 def write_json(path: str | Path, value: Any) -> None:
-    """Write `value` as JSON; NaN and infinity are refused, since JSON has neither."""
-    write_text(path, json.dumps(value, indent=2, allow_nan=False) + "\n")
+    """Write `value` as JSON (`to_json`)."""
+    write_text(path, to_json(value))
 
 
 def write_npz(path: str | Path, **arrays: np.ndarray) -> None:

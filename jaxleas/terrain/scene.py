@@ -1,7 +1,6 @@
 """Scenes: convex contact surfaces, obstacles and named areas, from which height maps are made."""
 
 import difflib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,6 +15,7 @@ from jaxleas.files import (
     read_json,
     refuse_misspelt_keys,
     require_version,
+    to_json,
     write_text,
 )
 from jaxleas.terrain.mending import counter_clockwise, flattened, turned_up, without_repeats
@@ -144,7 +144,7 @@ def write_scene(path: str | Path, scene: Scene) -> None:
         for group, polygons in groups.items()
     }
     touch = {"touch": dict(scene.touch)} if scene.touch else {}
-    text = json.dumps({"version": VERSION, **lists, **touch}, indent=2, allow_nan=False) + "\n"
+    text = to_json({"version": VERSION, **lists, **touch})
     if len(text) > MAX_JSON_BYTES:
         raise InputError(
             f"{path} would hold {len(scene.polygons)} polygons in {len(text) / 2**20:.0f} MiB, more"
