@@ -47,7 +47,7 @@ def read_steering_policy(path: str | Path) -> Policy | OnnxPolicy:
     """Return the policy at `path`; its `config` names the conditions that it was trained under.
 
     Args:
-        path: as for `load_policy`.
+        path: path of a run folder, a `policy.npz` or an `.onnx` file.
 
     Raises:
         InputError: there is no policy at the path, or it cannot be used.

@@ -23,6 +23,7 @@ MOST_ANGLE = math.radians(45.0)
 """Largest angle between the way ahead and the normal of the obstacle [rad]."""
 BEYOND = 0.5
 """How far bars reach beyond the course to either side, so that there is no way round [m]."""
+_SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
 def ledge_up(seed: int) -> Scenario:
@@ -131,8 +132,7 @@ def _barrier(rng: np.random.Generator, heights: tuple[float, float]) -> Limit:
 
 def _ground(limit: Limit, angle: float) -> TilePolygons:
     """Return the ground before and behind the obstacle, and the side of a ledge."""
-    course = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    course = np.column_stack([course * (HALF_LENGTH, HALF_WIDTH), np.zeros(4)])
+    course = np.column_stack([_SQUARE * (HALF_LENGTH, HALF_WIDTH), np.zeros(4)])
     normal = np.array([math.cos(angle), math.sin(angle), 0.0])
     before = _beyond(course, -normal, 0.0)
     behind = _raised(_beyond(course, normal, limit.gap), limit.rise)
@@ -162,8 +162,7 @@ def _bars(limit: Limit, angle: float, shift: float) -> list[TilePolygons]:
     parts = []
     for bar in limit.bars:
         for middle, half in _stretches(bar, limit.period, shift, reach):
-            corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-            corners = corners * (0.5 * bar.thickness, half) + (0.0, middle)
+            corners = _SQUARE * (0.5 * bar.thickness, half) + (0.0, middle)
             parts.append(TilePolygons(boxes=[box_faces(corners @ turn.T, bar.bottom, bar.top)]))
     return parts
 
