@@ -22,7 +22,7 @@ ORDER = (
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "cli"),
 )
-"""Of physics, controllers, multicontact and footsteps there is the place alone."""
+"""Of physics, controllers and multicontact there is the place alone."""
 # What keeps the loop of data open: these may not, although the order would let them.
 FORBIDDEN = {"surrogates": {"labels"}}
 MOST_PARAMETERS = 6  # a command has one for each of its options

@@ -1,3 +1,5 @@
+from .controller import MOVEMENTS as MOVEMENTS
+from .controller import ControllerIdentity as ControllerIdentity
 from .endings import ENDINGS as ENDINGS
 from .endings import Ending as Ending
 from .endings import describe_endings as describe_endings

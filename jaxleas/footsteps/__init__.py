@@ -1,0 +1,5 @@
+"""What a walking controller does with its velocity commands: records of footsteps."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

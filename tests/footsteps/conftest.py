@@ -1,0 +1,14 @@
+import pytest
+
+from jaxleas.footsteps import FootstepRecords
+from tests.footsteps.public import simulated
+
+
+@pytest.fixture(scope="session")
+def public(tmp_path_factory) -> FootstepRecords:
+    """The public footsteps of a simulated AlienGo."""
+    from tests.conftest import SHARED
+
+    if not SHARED.is_dir():
+        pytest.skip("the reference data (../shared) is not here")
+    return simulated(SHARED / "data" / "quadruped")
