@@ -58,6 +58,11 @@ COMMANDS = {
         "distill",
         "train a policy that knows its planner",
     ),
+    "gait fit": (
+        "jaxleas.footsteps.commands",
+        "fit",
+        "fit motion models to a controller's footsteps",
+    ),
     "sweep": ("jaxleas.sweeps.commands", "sweep", "search a space of configurations"),
     "population": (
         "jaxleas.sweeps.commands",

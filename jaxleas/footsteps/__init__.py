@@ -1,4 +1,4 @@
-"""What a walking controller does with its velocity commands: records of footsteps."""
+"""What a walking controller does with its velocity commands: records, motion models."""
 
 import lazy_loader
 

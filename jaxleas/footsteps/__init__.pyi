@@ -1,6 +1,15 @@
+from .fitting import FitSettings as FitSettings
+from .fitting import Fitted as Fitted
+from .fitting import fit_motion_models as fit_motion_models
+from .model import MotionModel as MotionModel
+from .model_file import read_motion_model as read_motion_model
+from .model_file import write_motion_model as write_motion_model
 from .record_file import read_footsteps as read_footsteps
 from .record_file import write_footsteps as write_footsteps
 from .records import FootstepRecords as FootstepRecords
 from .records import Footsteps as Footsteps
 from .records import join_footsteps as join_footsteps
 from .records import movement_of as movement_of
+from .scores import Score as Score
+from .scores import mean_absolute_error as mean_absolute_error
+from .scores import r2_percent as r2_percent

@@ -8,5 +8,6 @@ from .interruption import Interruption as Interruption
 from .metrics import MetricsLog as MetricsLog
 from .metrics import read_metrics as read_metrics
 from .progress import Progress as Progress
+from .provenance import collect_provenance as collect_provenance
 from .swallowed import interrupts_kept as interrupts_kept
 from .watching.catalogue import require_watchers as require_watchers
