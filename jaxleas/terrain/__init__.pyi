@@ -70,3 +70,4 @@ from .seeds import MAX_TRAINING_SEED as MAX_TRAINING_SEED
 from .seeds import TUNING_SEED as TUNING_SEED
 from .shaping import cropped as cropped
 from .tiles import TileKind as TileKind
+from .writers.mjcf import scene_mjcf as scene_mjcf

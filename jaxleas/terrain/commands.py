@@ -21,7 +21,7 @@ from jaxleas.terrain.scale import scale_for, scaled
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
 from jaxleas.terrain.scene import write_scene
 from jaxleas.terrain.shaping import holes
-from jaxleas.terrain.writers.catalogue import written_as
+from jaxleas.terrain.writers.catalogue import FormatName, named_by_format, written_as
 from jaxleas.types import InputError
 
 
@@ -50,7 +50,8 @@ def show(
 def convert(
     file: Path,
     *,
-    out: Path,
+    out: Path | None = None,
+    format: FormatName | None = None,
     reading: Reading = READING,
 ) -> Path:
     """Write a terrain as a file of another kind: height map, scene, STL, image, GeoTIFF or bag.
@@ -58,9 +59,16 @@ def convert(
     Args:
         file: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         out: file to write: .npz, .json, .stl, .xml (MJCF), .png, .tif, .asc, .bag, .mcap, or a name
-            without suffix for the folder of a ROS 2 bag.
+            without suffix for the folder of a ROS 2 bag; by default FILE with the suffix of
+            --format, in the current folder.
+        format: kind of file; by default that of the name of --out.
         reading: what the file does not state itself.
+
+    Raises:
+        InputError: the terrain cannot be read, or not be written so; neither --out nor --format
+            is given, or they disagree.
     """
+    out = named_by_format(file, out, format)
     form = written_as(out)
     if form.polygons is not None and (form.map is None or _stays_polygons(file, reading)):
         if has_polygons(file):

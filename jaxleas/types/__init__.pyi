@@ -15,6 +15,8 @@ from .paths import GuidePath as GuidePath
 from .paths import cut_walks as cut_walks
 from .poses import Pose as Pose
 from .poses import RootPose as RootPose
+from .quaternions import matrix_of as matrix_of
+from .quaternions import quaternion_about_z as quaternion_about_z
 from .quaternions import quaternion_of as quaternion_of
 from .queries import Query as Query
 from .root import RootMotion as RootMotion

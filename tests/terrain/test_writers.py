@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jaxleas import cli
 from jaxleas.terrain import HeightMap, Scene, import_terrain, load_scene, write_scene
 from jaxleas.terrain.commands import convert
 from jaxleas.terrain.reading import Reading
@@ -201,6 +202,19 @@ def test_an_mjcf_of_a_scene_is_loaded_by_mujoco_with_the_same_ground(tmp_path, s
         assert touched(model, x, y) == pytest.approx(z, abs=1e-6)
     again = import_terrain(tmp_path / "scene.xml")
     assert again.height_at(np.array([[2.5, 0.5]]))[0] == pytest.approx(0.4)
+
+
+def test_a_format_names_the_file(tmp_path, scene_file, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    cli.run(["terrain", "export", str(scene_file), "--format", "mjcf"])
+    assert f"{scene_file.stem}.xml" in [each.name for each in tmp_path.iterdir()]
+    assert convert(scene_file, out=Path("a.json"), format="scene") == Path("a.json")
+    with pytest.raises(InputError, match="say what to write: --out FILE, or --format such as mjcf"):
+        convert(scene_file)
+    with pytest.raises(InputError, match=r"--out a.stl is no name of the format mjcf: let it end"):
+        convert(scene_file, out=Path("a.stl"), format="mjcf")
+    with pytest.raises(InputError, match="is the terrain itself"):
+        convert(Path("a.json"), format="scene")
 
 
 def test_an_mjcf_of_a_map_is_a_height_field_with_pits(tmp_path, map_file, capsys):

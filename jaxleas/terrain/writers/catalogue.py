@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -59,6 +60,36 @@ WRITTEN: dict[str, Written] = {
     ".mcap": Written(write_mcap),
     "": Written(write_folder),
 }
+
+FormatName = Literal["npz", "scene", "stl", "mjcf", "png", "tif", "asc", "bag", "mcap"]
+"""Names of the kinds of files that a suffix states."""
+_SUFFIX: dict[str, str] = {"scene": ".json", "mjcf": ".xml"}
+
+
+def named_by_format(file: Path, out: Path | None, format: FormatName | None) -> Path:
+    """Return the file to write: what a person named, or the terrain's name as another kind.
+
+    Args:
+        file: file of the terrain.
+        out: name of the file to write, if it was given.
+        format: kind of file to write, if it was given.
+
+    Raises:
+        InputError: neither is given, the name states another kind, or the file is the terrain's.
+    """
+    if format is None:
+        if out is None:
+            raise InputError("say what to write: --out FILE, or --format such as mjcf")
+        return out
+    suffix = _SUFFIX.get(format, f".{format}")
+    if out is None:
+        named = Path(f"{file.stem}{suffix}")
+        if named.resolve() == file.resolve():
+            raise InputError(f"{named} is the terrain itself: name the file to write with --out")
+        return named
+    if WRITTEN.get(out.suffix.lower()) is not WRITTEN[suffix]:
+        raise InputError(f"--out {out} is no name of the format {format}: let it end in {suffix}")
+    return out
 
 
 def written_as(path: Path) -> Written:

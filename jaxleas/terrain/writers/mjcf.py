@@ -10,6 +10,7 @@ from jaxleas.files import atomic_path
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.loading import load_scene
 from jaxleas.terrain.reading import Reading
+from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.writers.scene_bodies import THICKNESS, Prism, prisms_of
 from jaxleas.types import is_ground
 
@@ -21,21 +22,31 @@ _ALONG = 1e-6
 
 def write_polygons_mjcf(path: Path, file: Path, reading: Reading) -> str:
     """Write a scene or mesh as geoms that stand still, one behind each polygon; return what."""
-    root, assets, world = _model(path)
-    boxes = 0
-    bodies = prisms_of(load_scene(file, reading))
-    for name, body in bodies.items():
+    root = scene_mjcf(load_scene(file, reading), path.stem)
+    _write(path, root)
+    meshes = len(root.findall("asset/mesh"))
+    boxes = len(root.findall("worldbody/geom")) - meshes
+    return f"an MJCF model of {boxes} boxes and {meshes} convex meshes"
+
+
+def scene_mjcf(scene: Scene, name: str = "scene") -> Element:
+    """Return a scene as an MJCF model of geoms that stand still, one behind each polygon.
+
+    Args:
+        scene: scene whose surfaces and obstacles become boxes and convex meshes.
+        name: name of the model.
+    """
+    root, assets, world = _model(name)
+    for each, body in prisms_of(scene).items():
         box = _box(body)
-        boxes += box is not None
         if box is not None:
             middle, half = box
-            SubElement(world, "geom", name=name, type="box", pos=_text(middle), size=_text(half))
+            SubElement(world, "geom", name=each, type="box", pos=_text(middle), size=_text(half))
         else:
             corners = np.concatenate([body.top, body.bottom])
-            SubElement(assets, "mesh", name=name, vertex=_text(corners))
-            SubElement(world, "geom", name=name, type="mesh", mesh=name)
-    _write(path, root)
-    return f"an MJCF model of {boxes} boxes and {len(bodies) - boxes} convex meshes"
+            SubElement(assets, "mesh", name=each, vertex=_text(corners))
+            SubElement(world, "geom", name=each, type="mesh", mesh=each)
+    return root
 
 
 def write_map_mjcf(path: Path, height_map: HeightMap) -> str:
@@ -47,7 +58,7 @@ def write_map_mjcf(path: Path, height_map: HeightMap) -> str:
     levels = (np.where(ground, height_map.heights, floor) - floor) / span
     rows, columns = height_map.shape
     half = 0.5 * height_map.resolution * (np.array([columns, rows]) - 1)
-    root, assets, world = _model(path)
+    root, assets, world = _model(path.stem)
     field = SubElement(assets, "hfield", name="ground", nrow=str(rows), ncol=str(columns))
     field.set("size", _text([*half, span, THICKNESS]))
     field.set("elevation", _text(levels[::-1]))  # north first, unlike in a compiled model
@@ -58,9 +69,9 @@ def write_map_mjcf(path: Path, height_map: HeightMap) -> str:
     return f"an MJCF model of one height field{pits}"
 
 
-def _model(path: Path) -> tuple[Element, Element, Element]:
+def _model(name: str) -> tuple[Element, Element, Element]:
     """Return an empty model, the place of its assets and that of its geoms."""
-    root = Element("mujoco", model=path.stem)
+    root = Element("mujoco", model=name)
     return root, SubElement(root, "asset"), SubElement(root, "worldbody")
 
 

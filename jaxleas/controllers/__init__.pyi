@@ -1,0 +1,17 @@
+from .catalogue import CONTROLLERS as CONTROLLERS
+from .catalogue import DEFAULT_CONTROLLER as DEFAULT_CONTROLLER
+from .catalogue import ControllerName as ControllerName
+from .catalogue import find_controller as find_controller
+from .controller import Controller as Controller
+from .controller import JointCommand as JointCommand
+from .falls import FALLS as FALLS
+from .falls import UPRIGHT as UPRIGHT
+from .falls import Fall as Fall
+from .falls import falls as falls
+from .trot import Trot as Trot
+from .trot_settings import TrotGains as TrotGains
+from .trot_settings import TrotSettings as TrotSettings
+from .walk import TICK as TICK
+from .walk import Ticked as Ticked
+from .walk import Walk as Walk
+from .walk import Walking as Walking

@@ -1,0 +1,16 @@
+from .bodies import DEFAULT_BODY as DEFAULT_BODY
+from .bodies import Body as Body
+from .bodies import Leg as Leg
+from .bodies import body_names as body_names
+from .bodies import load_body as load_body
+from .mujoco_extra import NoPhysicsError as NoPhysicsError
+from .mujoco_extra import import_mujoco as import_mujoco
+from .simulation import Physics as Physics
+from .simulation import Stepped as Stepped
+from .simulation import make_physics as make_physics
+from .simulation import standing as standing
+from .state import BodyState as BodyState
+from .state import Sensed as Sensed
+from .variation import Variation as Variation
+from .variation import varied_model as varied_model
+from .world import world_mjcf as world_mjcf
