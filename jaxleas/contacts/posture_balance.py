@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
-from jaxleas.contacts.posture_model import Stood, about, limb_of
+from jaxleas.contacts.posture_limbs import about, limb_of
+from jaxleas.contacts.posture_model import Stood
 from jaxleas.robots import Robot
 
 _LEAST_AREA = 1e-8  # a smaller sole is a point [m^2]

@@ -1,17 +1,15 @@
 """Pictures of a distillation: rounds, calibration, and learning curves of P1 and P2."""
 
 from collections.abc import Mapping, Sequence
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from jaxleas.distillation.round_result import RoundResult
-from jaxleas.reports import series
+from jaxleas.reports import blank_picture, dress, png_of, series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 DPI = 110
 BLUE, RED, GREY = "#1f5fd0", "#c33d2e", "0.72"
@@ -25,7 +23,7 @@ SMOOTH = 9  # updates over which a noisy curve is averaged
 
 def draw_rounds(rounds: Sequence[RoundResult]) -> bytes:
     """Draw the exact success of every round: the mean, with thin lines for the cells behind it."""
-    figure = _figure(6.4, 3.6)
+    figure = blank_picture(6.4, 3.6)
     ax: Axes = figure.subplots()
     number = [row.round for row in rounds]
     for name in rounds[0].cells:
@@ -34,12 +32,12 @@ def draw_rounds(rounds: Sequence[RoundResult]) -> bytes:
     ax.plot(number, mean, color=BLUE, marker="o", linewidth=2)
     _dress(ax, "round (0: the policy begun with)", "exact success [%]")
     ax.set_xticks(number)
-    return _png(figure)
+    return png_of(figure, DPI)
 
 
 def draw_calibration(report: Mapping[str, Any]) -> bytes:
     """Draw foreseen against observed failures, by stretch and by guide path."""
-    figure = _figure(8.4, 3.8)
+    figure = blank_picture(8.4, 3.8)
     for ax, name in zip(figure.subplots(1, 2), ("stretch", "guide"), strict=True):
         part = report[name]
         curve = np.maximum(np.array(part["curve"]), 0.0)
@@ -52,7 +50,7 @@ def draw_calibration(report: Mapping[str, Any]) -> bytes:
         title = f"by {name}: {part['count']}, error {error:.2f} %"
         ax.set_title(title, loc="left", fontsize=10)
         _dress(ax, "probability of failure foreseen", "share that failed")
-    return _png(figure)
+    return png_of(figure, DPI)
 
 
 def draw_learning(
@@ -64,7 +62,7 @@ def draw_learning(
         start: metrics of LEAS-P1; empty where they are not available.
         practice: metrics of each round.
     """
-    figure = _figure(11.0, 3.4)
+    figure = blank_picture(11.0, 3.4)
     axes = figure.subplots(1, len(CURVES))
     begins = start[-1]["step"] / 1e6 if start else 0.0
     for ax, (name, (label, factor)) in zip(axes, CURVES.items(), strict=True):
@@ -77,7 +75,7 @@ def draw_learning(
         _dress(ax, "environment steps [million]", label)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return _png(figure)
+    return png_of(figure, DPI)
 
 
 def _curve(
@@ -96,18 +94,4 @@ def _curve(
 
 def _dress(ax: "Axes", x: str, y: str) -> None:
     ax.set(xlabel=x, ylabel=y)
-    ax.grid(color="0.9", linewidth=0.6)
-    ax.tick_params(labelsize=8)
-    ax.spines[["top", "right"]].set_visible(False)
-
-
-def _figure(width: float, height: float) -> "Figure":
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def _png(figure: "Figure") -> bytes:
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+    dress(ax)

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jaxleas.files import atomic_path
 from jaxleas.guide.files import Reason
-from jaxleas.terrain import HeightMap, require_picture
+from jaxleas.terrain import HeightMap, require_picture, save_picture
 from jaxleas.types import GuidePath, Query
 
 if TYPE_CHECKING:
@@ -45,10 +44,7 @@ def draw_navigation(
     require_picture(path)
     ax = draw_height_map(terrain)
     plot_navigation(ax, guide_path, waypoints, goal)
-    figure = ax.get_figure(root=True)
-    assert figure is not None
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary, dpi=110)
+    save_picture(ax, Path(path))
 
 
 def plot_navigation(
@@ -120,7 +116,4 @@ def draw_guide_paths(
     x_min, x_max, y_min, y_max = terrain.extent
     ax.set(xlim=(x_min, x_max), ylim=(y_min, y_max))  # a goal off the map is not shown
     ax.legend(loc="upper right", fontsize="small", framealpha=0.9)
-    figure = ax.get_figure(root=True)
-    assert figure is not None
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary, dpi=110)
+    save_picture(ax, Path(path))

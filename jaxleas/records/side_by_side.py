@@ -9,7 +9,17 @@ from jaxleas.evaluation import cell_title
 from jaxleas.records.comparison import Comparison, Score, apart
 from jaxleas.records.listing import as_json, as_text, cut, duration
 from jaxleas.records.record import HELD_OUT, SUITE
-from jaxleas.reports import COLOURS, DPI, align, page_template, percent, series
+from jaxleas.reports import (
+    COLOURS,
+    DPI,
+    align,
+    blank_picture,
+    dress,
+    page_template,
+    percent,
+    png_of,
+    series,
+)
 
 TEMPLATE = "comparison.html"
 WIDEST = 44
@@ -108,11 +118,7 @@ def to_json(comparison: Comparison) -> Mapping[str, Any]:
 
 def draw(comparison: Comparison) -> bytes:
     """Draw the learning curves over each other and return them as a PNG."""
-    from io import BytesIO
-
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    figure = Figure(figsize=(11.2, 4.2), layout="constrained")
+    figure = blank_picture(11.2, 4.2)
     panels = (
         ("Held-out links reached", HELD_OUT, "% of starts", 100.0),
         ("Reward", "walk/reward", "per step", 1.0),
@@ -128,13 +134,9 @@ def draw(comparison: Comparison) -> bytes:
         ax.set_title(title, loc="left", fontsize=10, fontweight="bold")
         ax.set(xlabel="environment steps [million]", ylabel=unit)
         ax.set_xlim(left=0.0)
-        ax.grid(color="0.9", linewidth=0.6)
-        ax.tick_params(labelsize=8)
-        ax.spines[["top", "right"]].set_visible(False)
+        dress(ax)
         ax.legend(frameon=False, fontsize=8)
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+    return png_of(figure, DPI)
 
 
 def to_html(comparison: Comparison) -> str:

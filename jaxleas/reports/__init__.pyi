@@ -5,6 +5,9 @@ from .learning_curves import COLOURS as COLOURS
 from .learning_curves import DPI as DPI
 from .learning_curves import series as series
 from .page import page_template as page_template
+from .picture import blank_picture as blank_picture
+from .picture import dress as dress
+from .picture import png_of as png_of
 from .published import printed_planners as printed_planners
 from .published import thesis as thesis
 from .risk_dial import draw_dial as draw_dial

@@ -1,7 +1,6 @@
 """The thesis's figures 4.17 and 5.6 to 5.9, drawn from a figure file."""
 
 from collections.abc import Callable, Sequence
-from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,7 @@ from jaxleas.evaluation import (
     method_colour,
     method_title,
 )
-from jaxleas.reports.gallery import Picture
+from jaxleas.reports.picture import Picture, blank_picture, dress, png_of
 from jaxleas.reports.published import thesis
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def draw_figures(figures: Figures) -> list[Picture]:
 
 
 def _heights(figures: Figures) -> "Figure":
-    figure = _figure(8.4, 3.8)
+    figure = blank_picture(8.4, 3.8)
     ax: Axes = figure.subplots()
     along = np.array(figures.along)
     ground = np.array(figures.ground, float)
@@ -87,7 +86,7 @@ def _heights_words(figures: Figures) -> str:
 
 
 def _by_scenario(rows: Sequence[StepRow], kept: int, draw: Callable[..., None]) -> "Figure":
-    figure = _figure(10.4, 3.5)
+    figure = blank_picture(10.4, 3.5)
     for ax, name in zip(figure.subplots(1, len(BASIC)), BASIC, strict=True):
         draw(ax, [row for row in rows if row.cell == name], kept)
         ax.set_title(cell_title(name), loc="left", fontsize=10)
@@ -96,7 +95,7 @@ def _by_scenario(rows: Sequence[StepRow], kept: int, draw: Callable[..., None]) 
 
 
 def _both(rows: Sequence[StepRow], kept: int) -> "Figure":
-    figure = _figure(8.4, 3.5)
+    figure = blank_picture(8.4, 3.5)
     left, right = figure.subplots(1, 2)
     _success(left, rows, kept)
     _time(right, rows, kept)
@@ -133,7 +132,7 @@ def _line(ax: "Axes", method: str, x: list[float], y: list[float], marked: list[
 
 
 def _course(figures: Figures) -> "Figure":
-    figure = _figure(10.4, 4.4)
+    figure = blank_picture(10.4, 4.4)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
     along, ground = np.array(figures.course_along), np.array(figures.course_ground, float)
     floor = float(np.nanmin(ground)) - 0.1
@@ -162,9 +161,7 @@ def _by_method(rows: Sequence[StepRow]) -> dict[str, list[StepRow]]:
 
 def _dress(ax: "Axes", x: str, y: str) -> None:
     ax.set(xlabel=x, ylabel=y)
-    ax.grid(color="0.9", linewidth=0.6)
-    ax.tick_params(labelsize=8)
-    ax.spines[["top", "right"]].set_visible(False)
+    dress(ax)
 
 
 def _legend(figure: "Figure") -> None:
@@ -172,14 +169,6 @@ def _legend(figure: "Figure") -> None:
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=8)
 
 
-def _figure(width: float, height: float) -> "Figure":
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
 def _picture(number: str, figure: "Figure", words: str) -> Picture:
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     caption = f"{words} The thesis, figure {number}: {thesis().figures[number]}"
-    return Picture(f"figure {number}", caption, stream.getvalue())
+    return Picture(f"figure {number}", caption, png_of(figure, DPI))

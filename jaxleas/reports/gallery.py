@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,19 +18,9 @@ from jaxleas.evaluation import (
     roll_out_cell,
 )
 from jaxleas.guide import SteeringMethod
-from jaxleas.reports.pictures import (
-    GOAL,
-    INVALID,
-    PATH,
-    REACHED,
-    RING,
-    STOPPED,
-    UNPLANNED,
-    View,
-    choose_examples,
-    draw_profile,
-    draw_view,
-)
+from jaxleas.reports.height_profile import draw_profile
+from jaxleas.reports.picture import Picture, blank_picture, png_of
+from jaxleas.reports.top_view import View, choose_examples, draw_view, legend
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,21 +28,6 @@ if TYPE_CHECKING:
 DOTS = 80
 """Number of starts drawn in a picture, as in T fig. 3.14."""
 DPI = 120
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture of the report.
-
-    Attributes:
-        name: name of the picture's file, without suffix.
-        caption: caption of one or two sentences.
-        png: bytes of the picture, as PNG.
-    """
-
-    name: str
-    caption: str
-    png: bytes
 
 
 @dataclass(frozen=True)
@@ -98,7 +72,7 @@ def draw_gallery(
             f"The four transitions, {DOTS} starts each, with the back to the goal: yellow dots"
             " reached it, black ones met an invalid configuration, white ones stopped. Blue:"
             " example paths, with headings in black.",
-            _transitions(env, grounds, transitions, list(methods)),
+            _side_by_side(env, grounds, transitions, list(methods), (5.6, 2.15), examples=3),
         ),
         _picture(
             "profile",
@@ -109,7 +83,7 @@ def draw_gallery(
         _picture(
             "detours",
             "A hole and a wall between starts and goal.",
-            _detours(env, grounds, detours, list(methods)),
+            _side_by_side(env, grounds, detours, list(methods), (4.6, 3.9), examples=6),
         ),
         _picture(
             "circuit",
@@ -141,32 +115,26 @@ def _title(shown: _Shown, method: str) -> str:
     return f"{method_title(method)}, {cell_title(shown.cell.name)}: {done}"
 
 
-def _transitions(
-    env: SteeringEnv, grounds: Grounds, shown: list[_Shown], methods: list[str]
+def _side_by_side(
+    env: SteeringEnv,
+    grounds: Grounds,
+    shown: list[_Shown],
+    methods: list[str],
+    size: tuple[float, float],
+    examples: int,
 ) -> "Figure":
-    figure = _figure(5.6 * len(methods), 2.15 * len(shown) + 0.5)
+    """Draw a row for each cell and a column for each method, views of this size [inches]."""
+    figure = blank_picture(size[0] * len(methods), size[1] * len(shown) + 0.5)
     axes = figure.subplots(len(shown), len(methods), squeeze=False)
     for row, each in zip(axes, shown, strict=True):
         for ax, method in zip(row, methods, strict=True):
-            draw_view(ax, _view(env, grounds, each, method, 3, _title(each, method)))
-    legend(figure)
-    return figure
-
-
-def _detours(
-    env: SteeringEnv, grounds: Grounds, shown: list[_Shown], methods: list[str]
-) -> "Figure":
-    figure = _figure(4.6 * len(methods), 3.9 * len(shown) + 0.5)
-    axes = figure.subplots(len(shown), len(methods), squeeze=False)
-    for row, each in zip(axes, shown, strict=True):
-        for ax, method in zip(row, methods, strict=True):
-            draw_view(ax, _view(env, grounds, each, method, 6, _title(each, method)))
+            draw_view(ax, _view(env, grounds, each, method, examples, _title(each, method)))
     legend(figure)
     return figure
 
 
 def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) -> "Figure":
-    figure = _figure(3.9 * len(shown), 2.75)
+    figure = blank_picture(3.9 * len(shown), 2.75)
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for ax, each in zip(axes, shown, strict=True):
         valid = ~each.roll_outs[method].invalid[:DOTS]
@@ -180,14 +148,14 @@ def _ends(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) 
 
 
 def _single(env: SteeringEnv, grounds: Grounds, shown: _Shown, method: str) -> "Figure":
-    figure = _figure(9.0, 6.0)
+    figure = blank_picture(9.0, 6.0)
     draw_view(figure.subplots(), _view(env, grounds, shown, method, 1, _title(shown, method)))
     legend(figure)
     return figure
 
 
 def _profiles(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: str) -> "Figure":
-    figure = _figure(5.6 * len(shown), 3.6)
+    figure = blank_picture(5.6 * len(shown), 3.6)
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for ax, each in zip(axes, shown, strict=True):
         walked = each.roll_outs[method]
@@ -201,35 +169,5 @@ def _profiles(env: SteeringEnv, grounds: Grounds, shown: list[_Shown], method: s
     return figure
 
 
-def _figure(width: float, height: float) -> "Figure":
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def legend(figure: "Figure", planner: str | None = None) -> None:
-    """Explain the colours of top views, and with a planner's name those of its answers."""
-    from matplotlib.lines import Line2D
-
-    def dot(colour: str, edge: str, label: str) -> Line2D:
-        return Line2D([], [], marker="o", linestyle="", color=colour, mec=edge, label=label)
-
-    handles = [
-        dot(REACHED, "#5c4a00", f"start: {f'planned by {planner}' if planner else 'reached'}"),
-        *([dot(UNPLANNED, UNPLANNED, "start: reached, not planned")] if planner else []),
-        dot(STOPPED, RING, "start: stopped"),
-        dot(INVALID, INVALID, "start: invalid"),
-        dot(GOAL, GOAL, "goal"),
-        Line2D([], [], color=PATH, linewidth=2, label="path, heading"),
-        Line2D([], [], marker="x", linestyle="", color=GOAL, mew=2, label="invalid configuration"),
-    ]
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=8
-    )
-
-
 def _picture(name: str, caption: str, figure: "Figure") -> Picture:
-    stream = BytesIO()
-    # Without the software's version in it, equal pixels give equal bytes.
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return Picture(name, caption, stream.getvalue())
+    return Picture(name, caption, png_of(figure, DPI))

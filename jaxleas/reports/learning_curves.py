@@ -1,8 +1,9 @@
 """Learning curves from a run's metrics."""
 
 from collections.abc import Mapping, Sequence
-from io import BytesIO
 from typing import Any
+
+from jaxleas.reports.picture import blank_picture, dress, png_of
 
 DPI = 120
 COLOURS = ("#1f5fd0", "#c33d2e", "#2e8b57", "#8a5fb0", "#b8860b")
@@ -49,9 +50,7 @@ def draw_learning_curves(rows: Sequence[Mapping[str, Any]]) -> bytes:
     Args:
         rows: rows of `metrics.jsonl`.
     """
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    figure = Figure(figsize=(11.2, 5.6), layout="constrained")
+    figure = blank_picture(11.2, 5.6)
     for ax, (title, (unit, names)) in zip(figure.subplots(2, 2).flat, PANELS.items(), strict=True):
         percent = unit.startswith("%")
         for colour, (name, label) in zip(COLOURS, names.items(), strict=False):
@@ -63,11 +62,7 @@ def draw_learning_curves(rows: Sequence[Mapping[str, Any]]) -> bytes:
         if percent:
             ax.set_ylim(-2.0, 102.0)
         ax.set_xlim(left=0.0)
-        ax.grid(color="0.9", linewidth=0.6)
-        ax.tick_params(labelsize=8)
-        ax.spines[["top", "right"]].set_visible(False)
+        dress(ax)
         if len(names) > 1:
             ax.legend(frameon=False, fontsize=8)
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+    return png_of(figure, DPI)

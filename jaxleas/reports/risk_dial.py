@@ -1,8 +1,9 @@
 """The picture of the risk dial."""
 
 from collections.abc import Mapping, Sequence
-from io import BytesIO
 from typing import Any
+
+from jaxleas.reports.picture import blank_picture, dress, png_of
 
 DPI = 110
 
@@ -14,9 +15,7 @@ def draw_dial(curves: Mapping[str, Sequence[Mapping[str, Any]]], title: str) -> 
         curves: settings as `as_json` gives them, by the name of what was walked.
         title: title above the picture.
     """
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    figure = Figure(figsize=(10.4, 4.2), layout="constrained")
+    figure = blank_picture(10.4, 4.2)
     axes = figure.subplots(1, 3)
     for name, settings in curves.items():
         there = [each for each in settings if each["success"] is not None]
@@ -33,11 +32,7 @@ def draw_dial(curves: Mapping[str, Sequence[Mapping[str, Any]]], title: str) -> 
     labels = ("threshold", "starts attempted [%]", "mean speed of the root [cm/s]")
     for ax, label in zip(axes, labels, strict=True):
         ax.set(xlabel=label, ylabel="exact success of those attempted [%]")
-        ax.grid(color="0.9", linewidth=0.6)
-        ax.tick_params(labelsize=8)
-        ax.spines[["top", "right"]].set_visible(False)
+        dress(ax)
     axes[0].legend(frameon=False, fontsize=8, loc="lower right")
     figure.suptitle(title, fontsize=11)
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+    return png_of(figure, DPI)

@@ -10,9 +10,10 @@ from typing import Any
 from jaxleas.evaluation import POLICY, Candidate, CellResult, Evaluation, ReportBasis
 from jaxleas.files import read_json, write_bytes, write_text
 from jaxleas.guide import BASELINES, is_policy
-from jaxleas.reports.gallery import Picture, draw_gallery
+from jaxleas.reports.gallery import draw_gallery
 from jaxleas.reports.learning_curves import draw_learning_curves
 from jaxleas.reports.page import page_template
+from jaxleas.reports.picture import Picture
 from jaxleas.reports.table import (
     HEADINGS,
     cell_title,

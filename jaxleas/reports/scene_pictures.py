@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +23,8 @@ from jaxleas.evaluation import (
 )
 from jaxleas.files import write_bytes
 from jaxleas.labels import Judge
-from jaxleas.reports.gallery import legend
-from jaxleas.reports.pictures import View, choose_examples, draw_view
+from jaxleas.reports.picture import blank_picture, png_of
+from jaxleas.reports.top_view import View, choose_examples, draw_view, legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,7 +94,7 @@ def _scene(
     wide = columns > 3 * rows
     count = len(judged)
     size = (11.0, 1.6 * count + 0.6) if wide else (4.2 * count, 1.0 + 4.2 * rows / columns)
-    figure = _figure(*size)
+    figure = blank_picture(*size)
     axes = figure.subplots(count if wide else 1, 1 if wide else count, squeeze=False).ravel()
     for ax, (name, each) in zip(axes, judged.items(), strict=True):
         reached = int(each.roll_outs.reached.sum())
@@ -116,7 +115,7 @@ def _root_heights(grounds: Grounds, cell: Cell, judged: Mapping[str, Judged]) ->
     ground = grounds.maps[grounds.index[id(cell.scenarios[0])]]
     area = cell.scenarios[0].goal_area
     along = np.linspace(0.0, 0.5 * (area[0] + area[1]), BINS)
-    figure = _figure(8.0, 4.2)
+    figure = blank_picture(8.0, 4.2)
     ax: Axes = figure.subplots()
     height = ground.height_at(np.column_stack([along, np.zeros(BINS)])).astype(np.float64)
     ax.fill_between(along, -0.2, np.nan_to_num(height, nan=-0.2), color="0.6", label="ground")
@@ -141,15 +140,6 @@ def _stem(cell: Cell) -> str:
     return f"{cell.name}_{cell.yaw:.0f}deg_{round(100 * cell.speed)}cms"
 
 
-def _figure(width: float, height: float) -> "Figure":
-    from matplotlib.figure import Figure  # not pyplot: no global state, no window
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
 def _write(figure: "Figure", path: Path) -> Path:
-    stream = BytesIO()
-    # Without the software's version in it, equal pixels give equal bytes.
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    write_bytes(path, stream.getvalue())
+    write_bytes(path, png_of(figure, DPI))
     return path

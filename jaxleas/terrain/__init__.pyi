@@ -4,6 +4,7 @@ from .config import GeneratorConfig as GeneratorConfig
 from .draw import VOID_COLOUR as VOID_COLOUR
 from .draw import draw_height_map as draw_height_map
 from .draw import require_picture as require_picture
+from .draw import save_picture as save_picture
 from .generator import Arena as Arena
 from .generator import generate_arena as generate_arena
 from .height_map import HeightMap as HeightMap

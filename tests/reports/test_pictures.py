@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from jaxleas.evaluation.judge import CellRollOut
-from jaxleas.reports.pictures import arrow_indices, choose_examples, reach_below_root
+from jaxleas.reports.height_profile import reach_below_root
+from jaxleas.reports.top_view import arrow_indices, choose_examples
 
 
 def a_walk(start, reached, invalid) -> CellRollOut:

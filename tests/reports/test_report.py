@@ -5,7 +5,8 @@ import pytest
 
 from jaxleas.evaluation.examination import load_candidate
 from jaxleas.evaluation.report_basis import make_report_basis
-from jaxleas.reports.gallery import Picture, draw_gallery
+from jaxleas.reports.gallery import draw_gallery
+from jaxleas.reports.picture import Picture
 from jaxleas.reports.run_report import headlines, render_report, success_rows
 from tests.evaluation.conftest import StandStill
 from tests.reports.test_table import cell, evaluation

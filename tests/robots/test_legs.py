@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from urdfs import TALOS, published
 
-from jaxleas.contacts.posture_model import about
+from jaxleas.contacts.posture_limbs import about
 from jaxleas.geometry import Box, Polytope
 from jaxleas.robots import Robot, load_talos, read_robot, write_robot
 from jaxleas.robots.leg_kinds import same_model

@@ -12,7 +12,8 @@ from jaxleas.contacts.programs.com import with_first_cuts
 from jaxleas.contacts.programs.constraints import Family, StepConstraints, make_constraints
 from jaxleas.contacts.programs.linear_program import SolverStatus, solve
 from jaxleas.contacts.programs.mixed_integer import Formulation, assemble, chosen_surfaces
-from jaxleas.contacts.programs.placement import Placement, Targets, place
+from jaxleas.contacts.programs.nearest import Targets
+from jaxleas.contacts.programs.placement import Placement, place
 from jaxleas.contacts.programs.pruning import prune
 
 SEARCH_SHARE = 0.8

@@ -12,7 +12,7 @@ from jaxleas.contacts.programs.answers import certified, diagnosed, late
 from jaxleas.contacts.programs.decision import decide
 from jaxleas.contacts.programs.judging import judge_by_program
 from jaxleas.contacts.programs.mixed_integer import Formulation
-from jaxleas.contacts.programs.placement import Targets
+from jaxleas.contacts.programs.nearest import Targets
 from jaxleas.contacts.programs.settings import Cost, MipPlanSettings, MipSettings
 from jaxleas.contacts.reference import reference_foothold
 from jaxleas.robots import load_robot

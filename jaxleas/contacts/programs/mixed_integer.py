@@ -8,7 +8,7 @@ from jaxtyping import Float
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.constraints import INITIAL, StepConstraints
 from jaxleas.contacts.programs.linear_program import Program, Rows
-from jaxleas.contacts.programs.placement import Targets
+from jaxleas.contacts.programs.nearest import Targets
 
 Formulation = Literal["hull", "big_m"]
 LOOSER, SPARE = 1.5, 0.05

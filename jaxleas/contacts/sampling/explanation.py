@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.create import Move, create_contacts
+from jaxleas.contacts.sampling.create import create_contacts
 from jaxleas.contacts.sampling.guides import KeptGuides
 from jaxleas.contacts.sampling.maintain import maintain_contacts
+from jaxleas.contacts.sampling.move import Move
 from jaxleas.contacts.sampling.requirement import Requirement, Tally
 from jaxleas.contacts.sampling.stance import Stances
 

@@ -5,15 +5,17 @@ from jaxtyping import Bool, Float, Int
 
 from jaxleas.contacts.sampling.candidates import Aim, Candidates, near_candidates
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.create import Created, Move, clear_of, create_contacts, put
+from jaxleas.contacts.sampling.create import Created, create_contacts
 from jaxleas.contacts.sampling.database import align
 from jaxleas.contacts.sampling.guides import KeptGuides
 from jaxleas.contacts.sampling.leg_clearance import LegCapsules, leg_capsules
 from jaxleas.contacts.sampling.maintain import maintain_contacts
+from jaxleas.contacts.sampling.move import Move
 from jaxleas.contacts.sampling.placed_legs import legs_collide, place_legs
 from jaxleas.contacts.sampling.projection import project
 from jaxleas.contacts.sampling.roots import Roots, rotations_to_world, to_world
-from jaxleas.contacts.sampling.stance import Stances, no_stances, support_corners
+from jaxleas.contacts.sampling.stance import Stances, no_stances, put, support_corners
+from jaxleas.contacts.sampling.standing_legs import clear_of
 
 _ATTEMPTS = 8  # places tried for the first foot where the reference posture fails
 _APART = 3  # ranks from one such place to the next: neighbouring ranks are much alike

@@ -7,13 +7,15 @@ from time import perf_counter
 import numpy as np
 
 from jaxleas.contacts.sampling.case import PlanningCase
-from jaxleas.contacts.sampling.create import Created, Move, create_contacts, put
+from jaxleas.contacts.sampling.create import Created, create_contacts
 from jaxleas.contacts.sampling.diary import Diary
 from jaxleas.contacts.sampling.explanation import explain_feet
 from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import KeptGuides, keep_configurations
 from jaxleas.contacts.sampling.maintain import maintain_contacts
+from jaxleas.contacts.sampling.move import Move
 from jaxleas.contacts.sampling.plan import Ending, How, SamplingPlan
+from jaxleas.contacts.sampling.stance import put
 from jaxleas.types import GuidePath
 
 _LOOK = 3  # configurations at which contacts are judged together; most last that long

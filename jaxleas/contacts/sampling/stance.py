@@ -55,6 +55,13 @@ def no_stances(legs: Legs, count: int) -> Stances:
     )
 
 
+def put(stances: Stances, rows: Int[np.ndarray, " M"], new: Stances) -> None:
+    """Write stances into some rows of others."""
+    stances.sole[rows], stances.rotation[rows] = new.sole, new.rotation
+    stances.surface[rows], stances.corners[rows] = new.surface, new.corners
+    stances.since[rows] = new.since
+
+
 def support_corners(
     ground: Ground,
     sole: Float[np.ndarray, "N 3"],

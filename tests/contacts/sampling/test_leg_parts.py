@@ -13,10 +13,11 @@ from jaxleas.contacts.posture_model import Stood
 from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.contacts.sampling.candidates import near_candidates
 from jaxleas.contacts.sampling.case import make_case
-from jaxleas.contacts.sampling.create import Move, create_contacts
+from jaxleas.contacts.sampling.create import create_contacts
 from jaxleas.contacts.sampling.first_stance import first_stances
 from jaxleas.contacts.sampling.guides import keep_configurations
 from jaxleas.contacts.sampling.leg_clearance import leg_capsules, legs_touch, segment_distance
+from jaxleas.contacts.sampling.move import Move
 from jaxleas.contacts.sampling.placed_legs import legs_collide, mass_moments, place_legs
 from jaxleas.contacts.sampling.requirement import Requirement
 from jaxleas.contacts.sampling.roots import Roots

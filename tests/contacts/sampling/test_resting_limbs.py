@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas.contacts.plan_sampling import plan_sampling
-from jaxleas.contacts.posture_model import resting_mass
+from jaxleas.contacts.posture_limbs import resting_mass
 from jaxleas.contacts.sampling.settings import SamplingSettings
 from jaxleas.geometry import Box, Polytope
 from jaxleas.robots import Effector, Limb, Robot, load_robot
