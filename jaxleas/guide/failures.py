@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from jaxleas.envs.steering import SteeringEnv
     from jaxleas.terrain import HeightMap
 
-EXACTLY = "exact "
-"""Beginning of the name of a condition that failed on the terrain's polygons."""
+_EXACTLY = "exact "  # in files: beginning of the name of a condition that failed on polygons
 
 
 @dataclass(frozen=True)
@@ -24,16 +23,17 @@ class Failure:
     """What is wrong with the last configuration of an invalid path.
 
     Attributes:
-        condition: name of the condition that fails most, as a configuration gives it; one that
-            begins with "exact" failed on the terrain's polygons.
+        condition: name of the condition that fails most, as a configuration gives it.
         margin: its signed margin [m], negative, at least -1; None for an exact condition, which
             answers yes or no.
+        exactly: whether the condition fails on the terrain's polygons, where the map allowed it.
         else_exact: whether the exact conditions hold there, so that the height map alone refuses;
             None where they were not asked.
     """
 
     condition: str
     margin: float | None
+    exactly: bool = False
     else_exact: bool | None = None
 
     def at(self, path: GuidePath) -> str:
@@ -42,12 +42,11 @@ class Failure:
         Args:
             path: invalid path, which ends where it fails.
         """
-        exactly = self.condition.startswith(EXACTLY)
-        name = self.condition.removeprefix(EXACTLY)
-        where = ", on the terrain's polygons" if exactly else ""
+        where = ", on the terrain's polygons" if self.exactly else ""
         x, y, _ = path.position[-1]
         when = path.time[-1] - path.time[0]
-        clause = f"{TITLES.get(name, name)} fails at ({x:.2f}, {y:.2f}), {when:.1f} s{where}"
+        title = TITLES.get(self.condition, self.condition)
+        clause = f"{title} fails at ({x:.2f}, {y:.2f}), {when:.1f} s{where}"
         if self.margin is not None:
             most = " or less" if self.margin <= -MARGIN_LIMIT else ""
             clause += f": margin {self.margin:.2g} m{most}"
@@ -57,7 +56,7 @@ class Failure:
 def failures_to_arrays(failures: Sequence[Failure | None]) -> dict[str, np.ndarray]:
     """Return failures as arrays of a guide path file."""
     return {
-        "failed": np.array(["" if each is None else each.condition for each in failures], np.str_),
+        "failed": np.array(["" if each is None else _name_of(each) for each in failures], np.str_),
         "failed_margin": np.array(
             [np.nan if each is None or each.margin is None else each.margin for each in failures],
             np.float32,
@@ -88,9 +87,18 @@ def failures_from_arrays(
             f" {count} paths"
         )
     return tuple(
-        Failure(name, None if np.isnan(margin) else margin) if name else None
+        _failure(name, None if np.isnan(margin) else margin) if name else None
         for name, margin in zip(names.tolist(), margins.tolist(), strict=True)
     )
+
+
+def _name_of(failure: Failure) -> str:
+    """Return the name that a file gives to what failed."""
+    return _EXACTLY * failure.exactly + failure.condition
+
+
+def _failure(name: str, margin: float | None) -> Failure:
+    return Failure(name.removeprefix(_EXACTLY), margin, exactly=name.startswith(_EXACTLY))
 
 
 def failures_on_map(

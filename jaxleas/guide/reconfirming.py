@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jaxleas.conditions import EXACT_TWINS
-from jaxleas.guide.failures import EXACTLY, Failure
+from jaxleas.guide.failures import Failure
 from jaxleas.guide.files import Reason
 from jaxleas.guide.roadmaps.exact import scene_of
 from jaxleas.guide.roadmaps.navigation import until_refused
@@ -36,7 +36,7 @@ class Walked:
 
     def refused(self) -> int:
         """Return the number of paths that end where the exact conditions alone refuse."""
-        return sum(each is not None and each.margin is None for each in self.failures)
+        return sum(each is not None and each.exactly for each in self.failures)
 
     def mistaken(self) -> int:
         """Return the number of paths that end where the height map alone refuses."""
@@ -81,7 +81,7 @@ def _judged(row: _Row, refused: Mapping[str, np.ndarray]) -> _Row:
     if alone.any():
         first = int(np.argmax(alone))
         name = next(name for name, each in refused.items() if each[first])
-        return until_refused(path, alone), "invalid", Failure(EXACTLY + name, None)
+        return until_refused(path, alone), "invalid", Failure(name, None, exactly=True)
     if failure is not None and refused:
         failure = replace(failure, else_exact=not anyhow[-1])
     return path, reason, failure

@@ -71,8 +71,8 @@ def test_polygons_end_a_path_that_the_map_let_pass() -> None:
     assert not cut.valid[-1]
     reach = load_talos().trunk[0].high[0]
     assert cut.position[-1, 0] == pytest.approx(1.195 - reach, abs=0.021)
-    assert found.failures[0] == Failure("exact collision", None)
-    assert Failure("exact collision", None).at(cut).endswith(", on the terrain's polygons")
+    assert found.failures[0] == Failure("collision", None, exactly=True)
+    assert Failure("collision", None, exactly=True).at(cut).endswith(", on the terrain's polygons")
     assert len(found.paths[1]) == len(free)
     alone = reconfirm_walks(load_talos(), Scene(flat().surfaces, POST), names[:1], walked)
     assert alone.reasons == walked.reasons  # C did not judge on the map, nor does its twin
@@ -95,11 +95,13 @@ def test_a_refusal_of_the_map_alone_stands_and_is_said() -> None:
 
 
 def test_failures_survive_a_file(tmp_path) -> None:
-    failures = [Failure("collision", -0.25), None, Failure("exact collision", None)]
+    failures = [Failure("collision", -0.25), None, Failure("collision", None, exactly=True)]
     paths = [straight(0.1)] * 3
     file = tmp_path / "p.npz"
     write_guide_paths(file, paths, ["invalid", "reached", "invalid"], failures=failures)
     assert read_guide_paths(file).failures == tuple(failures)
+    stored = np.load(file, allow_pickle=False)["failed"]
+    assert stored.tolist() == ["collision", "", "exact collision"]  # docs/files.md
     write_guide_paths(file, paths, ["invalid", "reached", "invalid"])
     assert read_guide_paths(file).failures == ()
     arrays = dict(np.load(file, allow_pickle=False))
