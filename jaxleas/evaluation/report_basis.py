@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 
 from jaxleas.evaluation.starts import Grounds, make_grounds
+from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import REPORTED, STARTS_PER_SCENE, Cell, Suite, make_suite
-from jaxleas.terrain import PUBLISHED, Scale
+from jaxleas.robots import Robot
 
 LARGE = "transitions"
 """The suite with many scenes; a report only draws the first of each kind."""
@@ -27,20 +28,18 @@ class ReportBasis:
     grounds: Grounds
 
 
-def make_report_basis(
-    starts: int | None = None, seed: int = 0, scale: Scale = PUBLISHED
-) -> ReportBasis:
+def make_report_basis(robot: Robot, starts: int | None = None, seed: int = 0) -> ReportBasis:
     """Return the basis of a report.
 
     Args:
+        robot: robot that is judged.
         starts: number of starts per cell; by default each suite's usual number.
         seed: seed of scenes and starts.
-        scale: scale of the robot that the scenes are made for.
     """
     suites = {
-        name: make_suite(name, starts, seed).scaled(scale) for name in REPORTED if name != LARGE
+        name: suited(make_suite(name, starts, seed), robot) for name in REPORTED if name != LARGE
     }
-    large = make_suite(LARGE, STARTS_PER_SCENE, seed).scaled(scale)
+    large = suited(make_suite(LARGE, STARTS_PER_SCENE, seed), robot)
     like = suites["hole"]  # drawn with as many starts and steps as another suite is judged with
     shown = {
         (suite.name, cell.name, cell.yaw): replace(

@@ -31,7 +31,6 @@ from jaxleas.labels import settings_of, with_parameters
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
-from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
 
 
@@ -232,7 +231,7 @@ def report(run: Path, out: Path | None = None) -> Path:
         raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
-        basis = make_report_basis(scale=scale_for(candidate.env.robot))
+        basis = make_report_basis(candidate.env.robot)
         evaluations = run_evaluations(candidate, run, basis, reporter.say)
         path = write_report(run, candidate, evaluations, basis, out, reporter.say)
     print(f"written: {path}")

@@ -110,7 +110,7 @@ def test_the_success_table_has_the_shape_of_the_thesis():
 
 
 def test_the_gallery_draws_every_kind_of_scene(env):
-    basis = make_report_basis(starts=4)
+    basis = make_report_basis(env.robot, starts=4)
     pictures = draw_gallery(env, {"leas_p1": StandStill()}, basis)
     assert [each.name for each in pictures] == [
         "transitions",
