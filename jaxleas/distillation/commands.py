@@ -30,12 +30,11 @@ def distill(
     """
     import os
 
-    from jaxleas.configuration import load_config
     from jaxleas.contacts import permit
-    from jaxleas.distillation.config import DistillationConfig
     from jaxleas.distillation.distill import run_rounds
     from jaxleas.distillation.folder import DistillationFolder
-    from jaxleas.distillation.opening import first_run, open_folder, train_start
+    from jaxleas.distillation.loading import first_run, load_distillation
+    from jaxleas.distillation.opening import open_folder, train_start
     from jaxleas.distillation.table import table_of
     from jaxleas.distillation.workplace import Workplace
     from jaxleas.files import FolderLock
@@ -48,7 +47,7 @@ def distill(
         raise InputError(f"--devices is {devices}; give 1 or more")
     keep_compiled_programs()
     folder = DistillationFolder(Path(out))
-    asked = load_config(DistillationConfig, config)
+    asked = load_distillation(config, start)
     permitted = permit(config, asked.planner, planner, allow)
     ppo = first_run(asked, start).ppo
     if asked.mode == "surrogate":

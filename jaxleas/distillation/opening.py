@@ -2,16 +2,15 @@
 
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any
 
 from jaxleas.configuration import load_config, to_yaml
 from jaxleas.contacts import find_planner, settings_from
-from jaxleas.distillation.config import DistillationConfig, SteeringRun
+from jaxleas.distillation.config import DistillationConfig
 from jaxleas.distillation.folder import VERSION, DistillationFolder, read_begun_with
-from jaxleas.envs.steering import SteeringConfig
+from jaxleas.distillation.loading import load_steering_run
 from jaxleas.files import write_json, write_text
 from jaxleas.runs import RunFolder
-from jaxleas.training import Devices, load_run_config, make_task, train
+from jaxleas.training import Devices, make_task, train
 from jaxleas.types import InputError
 
 
@@ -62,15 +61,6 @@ def open_folder(
     return config
 
 
-def first_run(config: DistillationConfig, start: Path | None) -> SteeringRun:
-    """Return the configuration of the run that is begun with, or is yet to be trained.
-
-    Raises:
-        InputError: `start` is not a run folder.
-    """
-    return config.run if start is None else load_steering_run(RunFolder.open(start).config)
-
-
 def train_start(
     folder: DistillationFolder,
     config: DistillationConfig,
@@ -98,15 +88,3 @@ def train_start(
     with run:
         train(load_steering_run(run.config), run, devices=devices, allow=allow)
     return folder.start
-
-
-def load_steering_run(path: Path) -> SteeringRun:
-    """Return the configuration of a steering run.
-
-    Raises:
-        InputError: it cannot be read, or belongs to another task.
-    """
-    config: Any = load_run_config(path)
-    if not isinstance(config.env, SteeringConfig):
-        raise InputError(f"{path} is a run of the task {config.env.task}; one of steering would do")
-    return config

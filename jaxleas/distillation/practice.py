@@ -11,7 +11,7 @@ from jaxleas.conditions import Foresight, harmless, permission
 from jaxleas.configuration import to_yaml
 from jaxleas.distillation.config import DistillationConfig, SteeringRun
 from jaxleas.distillation.folder import RoundFolder
-from jaxleas.distillation.opening import load_steering_run
+from jaxleas.distillation.loading import load_steering_run
 from jaxleas.envs.steering import Steering
 from jaxleas.files import write_json
 from jaxleas.runs import Checkpoints, RunFolder
@@ -117,7 +117,9 @@ def read_run(path: str | Path, allow: Collection[str] = ()) -> tuple[SteeringRun
     Raises:
         InputError: the path is not a run folder, or has no checkpoint that can be read.
     """
-    config = load_steering_run(RunFolder.open(path).config)
+    run = RunFolder.open(path)
+    config = load_steering_run(run.config)
+    learned = _learned(run, config)
     if not harmless(config.env.conditions, allow):
         _LOG.warning(
             "%s: conditions other than the built-in ones give way to R* and C%s",
@@ -126,7 +128,7 @@ def read_run(path: str | Path, allow: Collection[str] = ()) -> tuple[SteeringRun
         )
         env = config.env.under_standard_conditions()
         config = config.model_copy(update={"env": env})
-    return config, read_learned(path)
+    return config, learned
 
 
 def read_learned(path: str | Path) -> Learned:
@@ -136,7 +138,10 @@ def read_learned(path: str | Path) -> Learned:
         InputError: the path is not a run folder, or has no checkpoint that can be read.
     """
     run = RunFolder.open(path)
-    config = load_steering_run(run.config)
+    return _learned(run, load_steering_run(run.config))
+
+
+def _learned(run: RunFolder, config: SteeringRun) -> Learned:
     like = jax.eval_shape(lambda: _fresh(config))
     return Checkpoints(run.checkpoints).latest(like, partial=True)[1]
 
