@@ -79,7 +79,7 @@ def make_walks(policy: Path) -> dict[str, Walks]:
 
 def _walk(
     env: SteeringEnv,
-    walker,
+    contender,
     scenes: list[Scene],
     areas: Sequence[Sequence[tuple[Area, Area]]],
     each: int,

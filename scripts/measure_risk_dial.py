@@ -22,6 +22,7 @@ from jaxleas.evaluation import (
     as_json,
     ask,
     cell_title,
+    contender,
     draw_starts,
     foresee,
     join,
@@ -29,7 +30,6 @@ from jaxleas.evaluation import (
     make_suite,
     now,
     sweep,
-    walker,
 )
 from jaxleas.files import write_bytes, write_json
 from jaxleas.guide import SteeringMethod, leas, load_policy, rb_kino
@@ -113,7 +113,7 @@ def disturbed(env: SteeringEnv, labels: Path, surrogate: Surrogate) -> Guides:
     """Return labelled walks on the terrains that only judged the surrogate's fit."""
     found = read_labels([labels], [], DEFAULT_RESOLUTION)
     settings = FitSettings()
-    judged = split_by_terrain(found.walks, settings.held_out, settings.seed).judged
+    judged = split_by_terrain(found.paths, settings.held_out, settings.seed).judged
     survival = 1.0 - foreseen_failure(surrogate, env, found.atlas, judged)
     there = np.arange(judged.yaw.shape[1])[None, 1:] < judged.kept[:, None]
     way = np.linalg.norm(np.diff(judged.position, axis=1), axis=-1)
@@ -138,7 +138,7 @@ def cells_of(
     found = {}
     for cell in suite.cells:
         starts = draw_starts(env, grounds, cell, suite.stream())
-        walked = walker(env, method)(grounds, starts, suite.steps_of(cell))
+        walked = contender(env, method)(grounds, starts, suite.steps_of(cell))
         judged = ask(cell, walked, judge, time_step)
         title = f"{cell_title(cell.name)} {cell.yaw:.0f}° {cell.speed:.2f}"
         each = foresee(env, grounds.atlas, judged, surrogate, time_step)

@@ -7,7 +7,7 @@ import numpy as np
 
 from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation import make_suite
-from jaxleas.evaluation.exact import walker
+from jaxleas.evaluation.contender import contender
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.guide import LEAS, load_policy
 from jaxleas.terrain import Scene
@@ -49,7 +49,7 @@ def walks(kind: str, count: int, held_out: bool) -> list[Walk]:
     found = []
     for offset, cell in enumerate(cells):
         starts = draw_starts(env, grounds, cell, suite.stream())
-        walk = walker(env, LEAS.make(env, policy))(grounds, starts, suite.steps_of(cell))
+        walk = contender(env, LEAS.make(env, policy))(grounds, starts, suite.steps_of(cell))
         for index in np.flatnonzero(walk.reached).tolist():
             number = int(starts.scene[index])
             path = walk.guide_path(index, env.config.limits.time_step)

@@ -1,12 +1,12 @@
 from .catalogue import TITLES as TITLES
-from .catalogue import make_judges as make_judges
+from .catalogue import make_conditions as make_conditions
 from .collision import Collision as Collision
 from .collision import collision as collision
 from .condition import MARGIN_LIMIT as MARGIN_LIMIT
 from .condition import VOID_IN_ROOT as VOID_IN_ROOT
 from .condition import AllOf as AllOf
 from .condition import Condition as Condition
-from .condition import Judge as Judge
+from .condition import MarginFunction as MarginFunction
 from .condition import OnPoints as OnPoints
 from .condition import all_of as all_of
 from .condition import read_from as read_from

@@ -56,7 +56,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
 
 
 @dataclass(frozen=True)
-class Judges:
+class EndingConditions:
     """The conditions that end an episode.
 
     Attributes:
@@ -70,13 +70,13 @@ class Judges:
     named: Mapping[str, Condition]
 
 
-def make_judges(
+def make_conditions(
     named: Sequence["Named"],
     robot: Robot,
     candidates: Float[np.ndarray, "C 2"],
     env: Any,
     allow: Collection[str] = (),
-) -> Judges:
+) -> EndingConditions:
     """Return the conditions that a configuration names.
 
     Args:

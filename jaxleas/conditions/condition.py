@@ -18,7 +18,7 @@ VOID_IN_ROOT = NO_GROUND_IN_ROOT
 MARGIN_LIMIT = 1.0
 """Bound to which margins are clipped, +- [m]: they are finite even over the void."""
 
-Judge = Callable[[Array, RootMotion], Array]
+MarginFunction = Callable[[Array, RootMotion], Array]
 """A function from heights [*batch, P] and a root motion to a margin [*batch], without its points.
 Such a callable is a condition of the older kind: it reads the heights at all points."""
 
@@ -57,7 +57,7 @@ class OnPoints:
     """
 
     points_in_root: Points
-    judge: Judge
+    judge: MarginFunction
 
     def __call__(
         self, heights_in_root: Float[Array, "*batch P"], motion: RootMotion
@@ -66,20 +66,20 @@ class OnPoints:
         return self.judge(heights_in_root, motion)
 
 
-def stated_points(condition: Condition | Judge) -> Points | None:
+def stated_points(condition: Condition | MarginFunction) -> Points | None:
     """Return the points that a condition states; None for a plain callable."""
     points = getattr(condition, "points_in_root", None)
     return None if points is None else np.asarray(points, dtype=np.float64)
 
 
-def with_points(condition: Condition | Judge, points: Points) -> Condition:
+def with_points(condition: Condition | MarginFunction, points: Points) -> Condition:
     """Return a condition unchanged, or a plain callable as one that reads `points`."""
     if stated_points(condition) is None:
         return OnPoints(points, condition)
     return condition  # type: ignore[return-value]
 
 
-def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
+def all_of(*conditions: Condition | MarginFunction, order: Points | None = None) -> Any:
     """Return the condition that holds where all of `conditions` do: the smallest of their margins.
 
     It reads the union of their points. A plain callable states no points: it receives all the
@@ -116,7 +116,9 @@ def all_of(*conditions: Condition | Judge, order: Points | None = None) -> Any:
 class AllOf:
     """The smallest margin of several conditions, each of which reads its own points."""
 
-    def __init__(self, points_in_root: Points, conditions: Sequence[Condition | Judge]) -> None:
+    def __init__(
+        self, points_in_root: Points, conditions: Sequence[Condition | MarginFunction]
+    ) -> None:
         """Combine conditions.
 
         Args:
@@ -147,7 +149,7 @@ class AllOf:
         return AllOf(points, own)
 
 
-def _least(judges: Sequence[Judge]) -> Judge:
+def _least(judges: Sequence[MarginFunction]) -> MarginFunction:
     def judge(
         heights_in_root: Float[Array, "*batch P"], motion: RootMotion
     ) -> Float[Array, "*batch"]:

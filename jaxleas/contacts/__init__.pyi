@@ -32,7 +32,7 @@ from .problem_file import read_problem as read_problem
 from .problem_file import write_problem as write_problem
 from .programs.attempt import attempt as attempt
 from .programs.mip import plan_mip as plan_mip
-from .programs.prefix import last_feasible_phase as last_feasible_phase
+from .programs.prefix import last_feasible_step as last_feasible_step
 from .programs.settings import MipSettings as MipSettings
 from .programs.settings import Sl1mSettings as Sl1mSettings
 from .programs.sl1m import plan_sl1m as plan_sl1m

@@ -46,7 +46,7 @@ def plan_along(
         feasible=False,
         status="infeasible",
         reason=touched.sentence,
-        last_feasible_phase=steps - 1,
+        last_feasible_step=steps - 1,
         seconds=answer.seconds,
         combinations=answer.combinations,
         undecided=answer.undecided,

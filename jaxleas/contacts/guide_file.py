@@ -13,7 +13,7 @@ NEEDED = ("time", "position", "yaw", "velocity", "valid")
 
 
 @dataclass(frozen=True, eq=False)
-class Walked:
+class RecordedGuide:
     """One guide path of a file.
 
     Attributes:
@@ -37,10 +37,10 @@ def read_guide_path(path: str | Path, query: int = 0) -> GuidePath:
     Raises:
         InputError: the file cannot be used, or has no such path.
     """
-    return read_walked(path, query).guide
+    return read_recorded_guide(path, query).guide
 
 
-def read_walked(path: str | Path, query: int = 0) -> Walked:
+def read_recorded_guide(path: str | Path, query: int = 0) -> RecordedGuide:
     """Return one guide path of a file, with how it ended and who walked it.
 
     Args:
@@ -75,4 +75,4 @@ def read_walked(path: str | Path, query: int = 0) -> Walked:
     )
     reasons = arrays.get("reason", np.array([], np.str_))
     said = str(reasons[query]) if reasons.ndim == 1 and query < len(reasons) else ""
-    return Walked(guide, ending_of(guide, said), RecordedRobot.from_arrays(arrays, path))
+    return RecordedGuide(guide, ending_of(guide, said), RecordedRobot.from_arrays(arrays, path))

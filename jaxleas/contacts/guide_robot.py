@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.guide_file import read_walked
+from jaxleas.contacts.guide_file import read_recorded_guide
 from jaxleas.contacts.planner import AskedGuide
-from jaxleas.robots import RecordedRobot, Walker, height_complaint, load_robot, walker_of
+from jaxleas.robots import PlannedRobot, RecordedRobot, height_complaint, load_robot, robot_for
 from jaxleas.terrain import Scene, polygon_area_vector
 from jaxleas.types import Ending, GuidePath, InputError
 
@@ -33,11 +33,11 @@ def read_asked(
     Raises:
         InputError: a file cannot be used, or the path is another robot's.
     """
-    walked = read_walked(guide, query)
-    walker = planned_robot(walked.robot, robot, [walked.guide], lambda: scene, guide)
-    if walker.note:
-        print(walker.note)
-    return AskedGuide(walker.name, walked.guide, scene), walked.ending
+    walked = read_recorded_guide(guide, query)
+    planned = planned_robot(walked.robot, robot, [walked.guide], lambda: scene, guide)
+    if planned.note:
+        print(planned.note)
+    return AskedGuide(planned.name, walked.guide, scene), walked.ending
 
 
 def planned_robot(
@@ -46,7 +46,7 @@ def planned_robot(
     guides: Sequence[GuidePath],
     scene: Callable[[], Scene],
     where: object,
-) -> Walker:
+) -> PlannedRobot:
     """Return the robot to plan with for a file's guide paths.
 
     It is the recorded robot. Of a file from before robots were recorded it is the one that a
@@ -62,14 +62,14 @@ def planned_robot(
     Raises:
         InputError: the paths are another robot's, or that robot is not known here.
     """
-    walker = walker_of(recorded, given, where)
+    planned = robot_for(recorded, given, where)
     if recorded is None and given is None:
         roots = np.concatenate([np.asarray(each.position, np.float64) for each in guides])
         some = roots[:: max(1, len(roots) // MOST_LOOKED_AT)]
-        problem = height_complaint(load_robot(walker.name), heights_above_ground(scene(), some))
+        problem = height_complaint(load_robot(planned.name), heights_above_ground(scene(), some))
         if problem:
             raise InputError(f"{where} does not say whose path it is, and {problem}")
-    return walker
+    return planned
 
 
 def heights_above_ground(scene: Scene, roots: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, " K"]:

@@ -43,9 +43,9 @@ def model_note(stated: Model | None, robot: str) -> str:
 
 
 def _described(robot: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    walker = load_robot(robot)
-    com = tuple(name for name in walker.foot_names if f"COM_in_{name}" in walker.steps)
-    return walker.foot_names, com
+    found = load_robot(robot)
+    com = tuple(name for name in found.foot_names if f"COM_in_{name}" in found.steps)
+    return found.foot_names, com
 
 
 def _obstacle(effectors: Sequence[str], com: Collection[str]) -> str:

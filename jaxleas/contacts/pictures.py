@@ -95,7 +95,7 @@ def _draw_surfaces(
 
 def failing_candidates(problem: ContactProblem, plan: ContactPlan) -> tuple[str, ...]:
     """Return the candidates of the first step that cannot be made; none if it is not known."""
-    last = plan.last_feasible_phase
+    last = plan.last_feasible_step
     if plan.feasible or last is None or last + 1 >= len(problem):
         return ()
     return problem.steps[last + 1].candidates

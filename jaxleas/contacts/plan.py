@@ -30,7 +30,7 @@ class ContactPlan:
         surfaces: name of the surface of each planned step.
         footholds: foothold of each step, in the world [m].
         com: two positions of the centre of mass per step [m]; None where the planner has none.
-        last_feasible_phase: index of the last step that can be made (that of the last step when
+        last_feasible_step: index of the last step that can be made (that of the last step when
             feasible, -1 when no step can be made); None when not requested.
         max_violation: largest violation of a constraint, by the certificate [m]; None without a
             plan.
@@ -56,7 +56,7 @@ class ContactPlan:
     surfaces: tuple[str, ...] = ()
     footholds: Float[np.ndarray, "n 3"] | None = None
     com: Float[np.ndarray, "n 2 3"] | None = None
-    last_feasible_phase: int | None = None
+    last_feasible_step: int | None = None
     max_violation: float | None = None
     seconds: float = 0.0
     combinations: int | None = None
@@ -66,6 +66,11 @@ class ContactPlan:
     gap: float = 0.0
     cause: Cause | None = None
     guide_ended: Ending | None = None
+
+    @property
+    def last_feasible_phase(self) -> int | None:
+        """The former name of `last_feasible_step`, still that of the file's key."""
+        return self.last_feasible_step
 
     def but(self, **changes: Any) -> "ContactPlan":
         """Return the plan with some attributes changed."""
@@ -87,7 +92,7 @@ def write_plan(path: str | Path, plan: ContactPlan) -> None:
             "surfaces": list(plan.surfaces),
             "footholds": [] if plan.footholds is None else plan.footholds.tolist(),
             "com": None if plan.com is None else plan.com.tolist(),
-            "last_feasible_phase": plan.last_feasible_phase,
+            "last_feasible_phase": plan.last_feasible_step,
             "robustness": None if plan.robustness is None else list(plan.robustness),
             "certificate": certificate,
             "seconds": plan.seconds,
@@ -131,7 +136,7 @@ def read_plan(path: str | Path) -> ContactPlan:
         surfaces=tuple(surfaces),
         footholds=_numbers(path, "footholds", content["footholds"], (len(surfaces), 3)),
         com=None if com is None else _numbers(path, "com", com, (len(surfaces), 2, 3)),
-        last_feasible_phase=_count(path, content, "last_feasible_phase"),
+        last_feasible_step=_count(path, content, "last_feasible_phase"),
         max_violation=_number(path, certificate, "max_violation_m"),
         seconds=_number(path, content, "seconds") or 0.0,
         combinations=_count(path, content, "combinations"),

@@ -44,8 +44,8 @@ def describe(problem: ContactProblem, found: ContactPlan) -> str:
     if found.feasible:
         return f"{found.planner}: feasible, {timing}, certified to {found.max_violation:.1g} m"
     reach = ""
-    if found.last_feasible_phase is not None:
-        reach = f" ({found.last_feasible_phase + 1} of {len(problem)} steps can be made)"
+    if found.last_feasible_step is not None:
+        reach = f" ({found.last_feasible_step + 1} of {len(problem)} steps can be made)"
     return f"{found.planner}: {found.status}{reach}, {timing}: {found.reason}"
 
 
@@ -81,7 +81,7 @@ def draw_along_guide(picture: Path, found: ContactPlan, asked: AskedGuide) -> No
 
 def _as_far_as_it_goes(problem: ContactProblem, found: ContactPlan) -> ContactPlan | None:
     """Plan the steps before the first that cannot be made, for a picture."""
-    count = 0 if found.last_feasible_phase is None else found.last_feasible_phase + 1
+    count = 0 if found.last_feasible_step is None else found.last_feasible_step + 1
     if found.feasible or found.planner not in PLANNERS or not 0 < count < len(problem):
         return None
     planner = find_planner(found.planner)

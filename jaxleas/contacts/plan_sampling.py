@@ -99,7 +99,7 @@ def contact_plan(found: SamplingPlan, feet: Sequence[str], gap: float) -> Contac
         reason=found.reason,
         surfaces=tuple(each.surfaces[each.moved] for each in made if each.moved),
         footholds=np.array(footholds).reshape(-1, 3),
-        last_feasible_phase=len(made) - 1,
+        last_feasible_step=len(made) - 1,
         seconds=found.seconds,
         robustness=tuple(found.robustness.tolist()),
         postures=postures,

@@ -29,7 +29,7 @@ class PostureCertificate:
     """The result of a check.
 
     Attributes:
-        worst: constraint that is violated most; its `phase` is the posture's number.
+        worst: constraint that is violated most; its `step` is the posture's number.
         least_robustness: lower bound of all postures' robustness with exact friction cones [N].
         robustness_error: largest fraction by which the plan overstates a robustness.
     """
@@ -49,7 +49,7 @@ class PostureCertificate:
         worst = self.worst
         if not worst.certified:
             much = f" by {worst.metres:.3g} m" if math.isfinite(worst.metres) else ": there is none"
-            return f"violates {worst.constraint} in posture {worst.phase}{much}"
+            return f"violates {worst.constraint} in posture {worst.step}{much}"
         if self.least_robustness < 0.0:
             return f"has a posture out of equilibrium, by {-self.least_robustness:.3g} N"
         if self.robustness_error > _SAME_FORCE:

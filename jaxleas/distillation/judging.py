@@ -11,10 +11,10 @@ from jaxleas.evaluation import (
     Bookkeeping,
     CellResult,
     Planner,
+    contender,
     judge_exact,
     make_suite,
     suited,
-    walker,
 )
 from jaxleas.files import read_json, require_version, typed, write_json
 from jaxleas.guide import leas
@@ -58,7 +58,7 @@ def judge_round(
         suite = suited(make_suite(name, config.starts, held_out=True), env.robot)
         cells += judge_exact(
             env,
-            {method: walker(env, leas(env, policy))},
+            {method: contender(env, leas(env, policy))},
             suite,
             {examiner.name: examiner.planner},
             bookkeeping=Bookkeeping(

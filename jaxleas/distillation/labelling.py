@@ -14,8 +14,8 @@ from jaxleas.distillation.folder import RoundFolder
 from jaxleas.envs.steering import SteeringEnv, World
 from jaxleas.files import write_json
 from jaxleas.guide import Reason, write_guide_paths
-from jaxleas.labels import Oracle, label_shards, plan_shards
-from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
+from jaxleas.labels import Oracle, label_shards, make_shards
+from jaxleas.surrogates import Surrogate, foreseen_failure, label_paths
 from jaxleas.terrain import Scene, write_scene
 from jaxleas.training import Policy
 from jaxleas.workers import Workers
@@ -87,7 +87,7 @@ def label_round(
     shards = [
         shard
         for guides in files
-        for shard in plan_shards(
+        for shard in make_shards(
             [guides],
             guides.with_name(guides.name.replace("guides", "scene")).with_suffix(".json"),
             oracle,
@@ -121,7 +121,7 @@ def _walk(ground: Ground, collection: Collection) -> Walks:
         return walks
     keep_every = surrogate.identity.keep_every
     paths = walks.paths(ground.env.config.limits.time_step)
-    labelled = label_walks(
+    labelled = label_paths(
         paths,
         [len(path) for path in paths],
         walks.map_index.tolist(),

@@ -71,9 +71,9 @@ def compare(
         before = None if file is None else kept_evaluation(file, candidate)
         sheet = _Sheet(head, suite, file, before)
         asked: tuple[str | None, ...] = planning.planners or (None,)
-        forecast = Forecast(suite, len(contenders.walkers), asked, say)
+        forecast = Forecast(suite, len(contenders.methods), asked, say)
         for key in sheet.results:
-            if key[4] in contenders.walkers and key[5] in asked:
+            if key[4] in contenders.methods and key[5] in asked:
                 forecast.skip(sheet.cells[key[:4]], key[5])
 
         def keep(result: CellResult) -> None:
@@ -82,7 +82,7 @@ def compare(
 
         judge_exact(
             candidate.env,
-            contenders.walkers,
+            contenders.methods,
             suite,
             judges,
             bookkeeping=Bookkeeping(dict(sheet.results), keep, forecast.guides),

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jaxleas.configuration import is_own
-from jaxleas.evaluation.exact import Walker, walker
+from jaxleas.evaluation.contender import Contender, contender
 from jaxleas.evaluation.examination import Candidate
-from jaxleas.evaluation.roadmap_walker import roadmap_walker
+from jaxleas.evaluation.roadmap_contender import roadmap_contender
 from jaxleas.evaluation.terms import Terms
 from jaxleas.guide import (
     METHODS,
@@ -29,12 +29,12 @@ class Contenders:
     """The methods of a comparison.
 
     Attributes:
-        walkers: walkers by the name that results carry, baselines first.
+        methods: methods by the name that results carry, baselines first.
         fingerprints: SHA-256 of the files of further policies and of methods of one's own, by
             name.
     """
 
-    walkers: Mapping[str, Walker]
+    methods: Mapping[str, Contender]
     fingerprints: Mapping[str, str]
 
 
@@ -62,24 +62,24 @@ def make_contenders(
             raise InputError(f"the method {name!r} is there already; give the policy another name")
     names = [*usual, *policies]
     chosen = names if wanted is None else [_known(name, policies) for name in wanted]
-    walkers: dict[str, Walker] = {}
+    methods: dict[str, Contender] = {}
     fingerprints: dict[str, str] = {}
     for name in sorted(dict.fromkeys(chosen), key=lambda each: (*names, each).index(each)):
         if name in policies:
-            walkers[name] = _policy_walker(policies[name], candidate.terms)
+            methods[name] = _policy_contender(policies[name], candidate.terms)
             fingerprints[name] = fingerprint_of(policies[name])
         elif is_own(name):
-            walkers[name] = _own_walker(candidate, name)
+            methods[name] = _own_contender(candidate, name)
             fingerprints |= _fingerprint_of_code(name)
         elif name in candidate.methods:
-            walkers[name] = walker(candidate.env, candidate.methods[name])
+            methods[name] = contender(candidate.env, candidate.methods[name])
         else:
             import_ompl()
             method = next(each for each in METHODS if each.roadmap_key == name)
-            walkers[name] = roadmap_walker(
+            methods[name] = roadmap_contender(
                 candidate.env, candidate.methods[method.key], method.edges
             )
-    return Contenders(walkers, fingerprints)
+    return Contenders(methods, fingerprints)
 
 
 def _known(name: str, policies: Mapping[str, Path]) -> str:
@@ -126,10 +126,10 @@ def fingerprint_of(path: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def _own_walker(candidate: Candidate, name: str) -> Walker:
+def _own_contender(candidate: Candidate, name: str) -> Contender:
     method = find_method(name)
     policy = read_steering_policy(candidate.path) if method.needs_policy else None
-    return walker(candidate.env, method.make(candidate.env, policy))
+    return contender(candidate.env, method.make(candidate.env, policy))
 
 
 def _fingerprint_of_code(name: str) -> dict[str, str]:
@@ -138,7 +138,7 @@ def _fingerprint_of_code(name: str) -> dict[str, str]:
     return {} if file is None else {name: hashlib.sha256(Path(file).read_bytes()).hexdigest()}
 
 
-def _policy_walker(path: Path, terms: Terms) -> Walker:
+def _policy_contender(path: Path, terms: Terms) -> Contender:
     policy = read_steering_policy(path)
     env = terms.env(policy.config)
-    return walker(env, leas(env, policy))
+    return contender(env, leas(env, policy))

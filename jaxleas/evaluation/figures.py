@@ -7,7 +7,8 @@ import numpy as np
 
 from jaxleas.contacts import PlannerSettings
 from jaxleas.envs.steering import SteeringEnv
-from jaxleas.evaluation.exact import Judged, Walker, ask
+from jaxleas.evaluation.contender import Contender
+from jaxleas.evaluation.exact_answers import Judged, ask
 from jaxleas.evaluation.figure_file import (
     Course,
     FigureFile,
@@ -64,7 +65,7 @@ def figure_cells(suite: Suite, course_starts: int) -> dict[str, Cell]:
 
 def measure_figures(
     env: SteeringEnv,
-    walkers: Mapping[str, Walker],
+    contenders: Mapping[str, Contender],
     suite: Suite,
     questions: Questions,
     file: FigureFile,
@@ -74,7 +75,7 @@ def measure_figures(
 
     Args:
         env: steering task.
-        walkers: methods, by name.
+        contenders: methods, by name.
         suite: `thesis`, cut down to the cells of `figure_cells`.
         questions: settings, workers and discretisations of the exact planner.
         file: figure file, with the rows that it has already.
@@ -84,15 +85,15 @@ def measure_figures(
     figures, keep_every = file.figures, questions.keep_every
     grounds = make_grounds(list(cells.values()))
     known = {(row.cell, row.method, row.keep_every): row for row in figures.steps}
-    total = len(cells) * len(walkers) * len(keep_every)
+    total = len(cells) * len(contenders) * len(keep_every)
     for name in (*BASIC, COURSE):
         cell = cells[name]
         starts = None
-        for method, walks in walkers.items():
+        for method, roll_out in contenders.items():
             if all((name, method, each) in known for each in keep_every):
                 continue
             starts = starts or draw_starts(env, grounds, cell, suite.stream())
-            walked = walks(grounds, starts, suite.steps_of(cell))
+            walked = roll_out(grounds, starts, suite.steps_of(cell))
             if name == "stairs_up":
                 figures = _with_heights(figures, grounds, cell, method, walked)
             for each in keep_every:

@@ -103,7 +103,7 @@ def figures(
         with Reporter() as reporter:
             found = measure_figures(
                 candidate.env,
-                contenders.walkers,
+                contenders.methods,
                 replace(suite, cells=tuple(figure_cells(suite, course_starts).values())),
                 Questions(settings, workers, tuple(keep_every)),
                 FigureFile(Path(out), found),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jaxleas.evaluation.exact import Judged
+from jaxleas.evaluation.exact_answers import Judged
 
 
 def height_band(judged: Judged, along: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

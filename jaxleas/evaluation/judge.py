@@ -54,7 +54,7 @@ def judge(
 
 
 def summarise(cell: Cell, method: str, walked: CellRollOut, time_step: float) -> CellResult:
-    """Count the outcomes of a cell and measure the paths of those that arrived.
+    """Count how the starts of a cell ended and measure the paths of those that arrived.
 
     Args:
         cell: cell that was walked.

@@ -14,7 +14,7 @@ VERSION = 1
 
 
 class AreaResult(Strict):
-    """Outcomes of the starts in one start area."""
+    """Results of the starts in one start area."""
 
     starts: Count
     reached: Fraction
@@ -22,7 +22,7 @@ class AreaResult(Strict):
 
 
 class CellResult(Strict):
-    """Outcomes of one method in one cell; reached + invalid + stopped = 1."""
+    """Results of one method in one cell; reached + invalid + stopped = 1."""
 
     name: str
     yaw: float
@@ -67,7 +67,7 @@ class CellResult(Strict):
     waypoints: NonNegative | None = None
     """Mean number of waypoints between start and goal, over those that reached it by a roadmap."""
     areas: dict[str, AreaResult] = Field(default_factory=dict)
-    """Outcomes by start area: "near" and "far" from the transition."""
+    """Results by start area: "near" and "far" from the transition."""
 
     @property
     def success(self) -> float:

@@ -13,10 +13,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.envs.steering import SteeringEnv
-from jaxleas.evaluation.exact import Judged
+from jaxleas.evaluation.exact_answers import Judged
 from jaxleas.evaluation.judge import path_lengths
 from jaxleas.evaluation.statistics import wilson_interval
-from jaxleas.surrogates import Surrogate, foreseen_failure, label_walks
+from jaxleas.surrogates import Surrogate, foreseen_failure, label_paths
 from jaxleas.terrain import Atlas
 
 
@@ -81,7 +81,7 @@ def foresee(
         paths = [walked.guide_path(int(row), time_step) for row in rows]
         maps = np.asarray(walked.starts.map_index)[rows].tolist()
         last = [len(path) - 1 for path in paths]
-        walks = label_walks(paths, last, maps, keep, 1 + max(last) // keep)
+        walks = label_paths(paths, last, maps, keep, 1 + max(last) // keep)
         survival[rows] = 1.0 - foreseen_failure(surrogate, env, atlas, walks)
     length, _ = path_lengths(walked)
     speed = length / np.maximum(walked.end * time_step, time_step)

@@ -57,34 +57,34 @@ def rollout(
     from jaxleas.guide.files import read_queries, require_on_terrain, write_guide_paths
     from jaxleas.guide.loading import load_policy
     from jaxleas.guide.picture import draw_guide_paths
-    from jaxleas.guide.reconfirming import Walked, polygons_of, reconfirm_walks
+    from jaxleas.guide.reconfirming import EndedPaths, polygons_of, reconfirm
     from jaxleas.guide.rollout import paths
-    from jaxleas.guide.rollout_report import describe_walks, failure_lines, goals_off_the_map
+    from jaxleas.guide.rollout_report import describe_paths, failure_lines, goals_off_the_map
     from jaxleas.terrain import import_terrain, require_picture
 
     asked = read_queries(queries)
     _require_sizes(steps, len(asked), out)
     if picture is not None:
         require_picture(picture)
-    walker = load_policy(policy, allow)
+    loaded = load_policy(policy, allow)
     ground = import_terrain(terrain, reading)
     require_on_terrain(queries, asked, ground)
     scene = polygons_of(terrain, reading, exact)
-    env = SteeringEnv(walker.config, allow=allow)
+    env = SteeringEnv(loaded.config, allow=allow)
     config = env.config
-    method = find_method(steering).make(env, walker)
+    method = find_method(steering).make(env, loaded)
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
     failures = failures_on_map(env, ground, guide_paths, reasons)
-    found = Walked(tuple(guide_paths), tuple(reasons), tuple(failures))
+    found = EndedPaths(tuple(guide_paths), tuple(reasons), tuple(failures))
     if scene is not None:
-        found = reconfirm_walks(env.robot, scene, env.conditions, found)
+        found = reconfirm(env.robot, scene, env.conditions, found)
     write_guide_paths(out, found.paths, found.reasons, robot=config.robot, failures=found.failures)
     if picture is not None:
         draw_guide_paths(picture, ground, found.paths, found.reasons, asked)
     drawn = f"; drawn in {picture}" if picture is not None else ""
-    print(f"{out}: {describe_walks(found, exactly=scene is not None)}{drawn}")
+    print(f"{out}: {describe_paths(found, exactly=scene is not None)}{drawn}")
     for line in (*goals_off_the_map(asked, ground), *failure_lines(found, out)):
         print(line)
 

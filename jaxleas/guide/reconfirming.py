@@ -1,4 +1,4 @@
-"""Walks on a height map, judged once more on the polygons of the terrain."""
+"""Guide paths over a height map, judged once more on the polygons of the terrain."""
 
 import logging
 from collections.abc import Collection, Mapping
@@ -21,7 +21,7 @@ _Row = tuple[GuidePath, Reason, Failure | None]
 
 
 @dataclass(frozen=True)
-class Walked:
+class EndedPaths:
     """Guide paths and how each ended.
 
     Attributes:
@@ -43,10 +43,10 @@ class Walked:
         return sum(each is not None and each.else_exact is True for each in self.failures)
 
 
-def reconfirm_walks(
-    robot: Robot, scene: Scene, conditions: Collection[str], walked: Walked
-) -> Walked:
-    """Return walks that end, invalid, where an exact condition refuses what the map allowed.
+def reconfirm(
+    robot: Robot, scene: Scene, conditions: Collection[str], walked: EndedPaths
+) -> EndedPaths:
+    """Return paths that end, invalid, where an exact condition refuses what the map allowed.
 
     A path that the height map refuses stays invalid, whatever the polygons say of the place.
 
@@ -54,7 +54,7 @@ def reconfirm_walks(
         robot: robot that walks.
         scene: polygons of the terrain.
         conditions: names of the conditions that judged on the map; those of R, R* and C have twins.
-        walked: walks on the terrain's height map.
+        walked: paths over the terrain's height map.
     """
     position = np.concatenate([path.position for path in walked.paths])
     yaw = np.concatenate([path.yaw for path in walked.paths])
@@ -70,7 +70,7 @@ def reconfirm_walks(
             zip(walked.paths, walked.reasons, walked.failures, strict=True)
         )
     ]
-    return Walked(*(tuple(column) for column in zip(*judged, strict=True)))
+    return EndedPaths(*(tuple(column) for column in zip(*judged, strict=True)))
 
 
 def _judged(row: _Row, refused: Mapping[str, np.ndarray]) -> _Row:
@@ -88,7 +88,7 @@ def _judged(row: _Row, refused: Mapping[str, np.ndarray]) -> _Row:
 
 
 def polygons_of(terrain: Path, reading: Reading, wanted: bool | None) -> Scene | None:
-    """Return the polygons on which walks are judged once more; None where they are not.
+    """Return the polygons on which paths are judged once more; None where they are not.
 
     Args:
         terrain: terrain file.

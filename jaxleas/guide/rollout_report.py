@@ -1,10 +1,10 @@
-"""What `jaxleas rollout` says of its walks."""
+"""What `jaxleas rollout` says of its paths."""
 
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from jaxleas.guide.reconfirming import Walked
+from jaxleas.guide.reconfirming import EndedPaths
 from jaxleas.terrain import HeightMap
 from jaxleas.types import Query
 
@@ -13,11 +13,11 @@ MOST_LINES = 20
 MOST_NUMBERS = 5
 
 
-def describe_walks(walked: Walked, exactly: bool) -> str:
-    """Return how the walks ended, in one sentence.
+def describe_paths(walked: EndedPaths, exactly: bool) -> str:
+    """Return how the paths ended, in one sentence.
 
     Args:
-        walked: walks.
+        walked: paths that were walked, and how each ended.
         exactly: whether they were judged on the terrain's polygons, too.
     """
     count = Counter(walked.reasons)
@@ -33,11 +33,11 @@ def describe_walks(walked: Walked, exactly: bool) -> str:
     )
 
 
-def failure_lines(walked: Walked, out: Path) -> list[str]:
+def failure_lines(walked: EndedPaths, out: Path) -> list[str]:
     """Return a line for each invalid walk: what failed, where and by how much.
 
     Args:
-        walked: walks.
+        walked: paths that were walked, and how each ended.
         out: file that holds all of the failures.
     """
     lines = [

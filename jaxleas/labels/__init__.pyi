@@ -3,7 +3,7 @@ from .judging import Judge as Judge
 from .judging import planner_workers as planner_workers
 from .label import judge_shard as judge_shard
 from .label import label_shards as label_shards
-from .label import plan_shards as plan_shards
+from .label import make_shards as make_shards
 from .oracle import Oracle as Oracle
 from .own_planners import AskedGuides as AskedGuides
 from .own_planners import Here as Here

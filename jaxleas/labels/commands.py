@@ -73,12 +73,12 @@ def label(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from jaxleas.labels.label import label_shards, plan_shards
+    from jaxleas.labels.guide_files import read_guide_files
+    from jaxleas.labels.label import label_shards, make_shards
     from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.scenes import settled_scene, states_itself
     from jaxleas.labels.settings import settings_of, with_parameters
     from jaxleas.labels.shards import read_verdicts
-    from jaxleas.labels.walked import read_walks
     from jaxleas.workers import require_count
 
     given = {
@@ -99,7 +99,7 @@ def label(
         require_count(processes)
     begun = perf_counter()
     crossed = cache(lambda: load_scene(scene, reading, search))
-    walked = read_walks(guides, crossed, robot)
+    walked = read_guide_files(guides, crossed, robot)
     for note in (*walked.notes, settings.note_for(walked.robot)):
         if note:
             print(note)
@@ -109,7 +109,7 @@ def label(
     ground = Path(scene).absolute()
     if not states_itself(ground, reading, search):
         ground = settled_scene(crossed(), ground, Path(out).absolute())
-    shards = plan_shards(files, ground, oracle, Path(out).absolute())
+    shards = make_shards(files, ground, oracle, Path(out).absolute())
     team = _engage(workers, processes, len(shards))
     console = Console(stderr=True)
     columns = ("guide paths", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())

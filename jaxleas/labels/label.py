@@ -7,13 +7,13 @@ from jaxleas.guide import read_guide_paths
 from jaxleas.labels.oracle import Oracle
 from jaxleas.labels.planners import judge
 from jaxleas.labels.shards import Asked, Shard, write_shard
-from jaxleas.robots import walker_of
+from jaxleas.robots import robot_for
 from jaxleas.terrain import load_scene
 from jaxleas.types import InputError
 from jaxleas.workers import Workers
 
 
-def plan_shards(
+def make_shards(
     guides: Sequence[Path], scene: Path, oracle: Oracle, out: Path, a_shard: int | None = None
 ) -> list[Shard]:
     """Return the shards of guide path files: `out/<file's stem>/verdicts_<first>.json`.
@@ -39,7 +39,7 @@ def plan_shards(
     shards = []
     for path in guides:
         file = read_guide_paths(path)
-        walker_of(file.robot, oracle.robot, path)
+        robot_for(file.robot, oracle.robot, path)
         count = len(file.paths)
         asked = Asked(path, scene, oracle.planner, settings, oracle.robot)
         provenance = asked.provenance()
@@ -72,7 +72,7 @@ def label_shards(
     """Judge the shards that are not done, several at a time.
 
     Args:
-        shards: shards from `plan_shards`.
+        shards: shards from `make_shards`.
         workers: workers that judge the shards.
         on_done: function called with the number of further guide paths that are done.
 

@@ -147,7 +147,7 @@ def evaluate(
     if pictures is not None:
         with Reporter() as reporter:
             drawn = draw_side_by_side(
-                candidate.env, contenders.walkers, chosen, names[:1], pictures, reporter.say
+                candidate.env, contenders.methods, chosen, names[:1], pictures, reporter.say
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
     return evaluation

@@ -10,10 +10,10 @@ import numpy as np
 from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation import (
     Cell,
+    Contender,
     Grounds,
     Judged,
     Suite,
-    Walker,
     ask,
     cell_title,
     draw_starts,
@@ -41,7 +41,7 @@ DPI = 100
 
 def draw_side_by_side(
     env: SteeringEnv,
-    walkers: Mapping[str, Walker],
+    contenders: Mapping[str, Contender],
     suite: Suite,
     planners: tuple[str, ...],
     folder: Path,
@@ -51,7 +51,7 @@ def draw_side_by_side(
 
     Args:
         env: steering task.
-        walkers: walkers by method name.
+        contenders: contenders by method name.
         suite: suite whose cells are drawn.
         planners: names of the exact planners; the first colours the starts.
         folder: folder of the pictures.
@@ -67,8 +67,8 @@ def draw_side_by_side(
         say(f"drawing {cell_title(cell.name)} at {cell.yaw:.0f} deg")
         starts = draw_starts(env, grounds, cell, suite.stream())
         judged = {}
-        for name, walks in walkers.items():
-            walked = walks(grounds, starts, suite.steps_of(cell))
+        for name, roll_out in contenders.items():
+            walked = roll_out(grounds, starts, suite.steps_of(cell))
             judged[name] = Judged(walked, (None,) * STARTS)
             if planners:
                 judge = Judge(planners[0], robot=env.config.robot)

@@ -72,20 +72,20 @@ def choose_examples(roll_outs: CellRollOut, count: int, among: int) -> list[int]
 
 
 def draw_view(ax: "Axes", view: View) -> None:
-    """Draw a top view: starts coloured by outcome, the goal, example paths and headings."""
+    """Draw a top view: starts coloured by how each ended, the goal, example paths and headings."""
     draw_height_map(view.ground, ax=ax, colour_bar=False)
     ax.set_title(view.title, fontsize=10)
     roll_outs = view.roll_outs
     shown = np.arange(len(roll_outs.reached)) < view.dots
     start = roll_outs.position[:, 0, :2]
     planned = roll_outs.reached if view.planned is None else view.planned
-    outcomes = (
+    endings = (
         (planned, REACHED, "#5c4a00", 0.4),
         (roll_outs.reached & ~planned, UNPLANNED, "#ffffff", 0.3),
         (~roll_outs.reached & ~roll_outs.invalid, STOPPED, RING, 1.2),
         (roll_outs.invalid, INVALID, "#ffffff", 0.3),
     )
-    for flag, colour, edge, width in outcomes:
+    for flag, colour, edge, width in endings:
         dots = start[flag & shown]
         ax.scatter(
             dots[:, 0], dots[:, 1], s=20, c=colour, edgecolors=edge, linewidths=width, zorder=3

@@ -19,9 +19,9 @@ from .limb_model import Capsule as Capsule
 from .limb_model import LimbModel as LimbModel
 from .limb_model import LinkBox as LinkBox
 from .numeric_inverse import numeric_inverse as numeric_inverse
+from .recorded import PlannedRobot as PlannedRobot
 from .recorded import RecordedRobot as RecordedRobot
-from .recorded import Walker as Walker
-from .recorded import walker_of as walker_of
+from .recorded import robot_for as robot_for
 from .robot import Limb as Limb
 from .robot import Robot as Robot
 from .talos import load_talos as load_talos

@@ -77,7 +77,7 @@ class RecordedRobot:
 
 
 @dataclass(frozen=True)
-class Walker:
+class PlannedRobot:
     """The robot whose contacts are planned, and a line to print where that is not plain.
 
     Attributes:
@@ -89,7 +89,7 @@ class Walker:
     note: str = ""
 
 
-def walker_of(recorded: RecordedRobot | None, given: str | None, where: object) -> Walker:
+def robot_for(recorded: RecordedRobot | None, given: str | None, where: object) -> PlannedRobot:
     """Return the robot to plan with for a file's guide paths.
 
     Args:
@@ -101,7 +101,7 @@ def walker_of(recorded: RecordedRobot | None, given: str | None, where: object) 
         InputError: the file is another robot's, or its robot is not known here.
     """
     if recorded is None:
-        return Walker(DEFAULT_ROBOT if given is None else given)
+        return PlannedRobot(DEFAULT_ROBOT if given is None else given)
     name = recorded.name if given is None else given
     try:
         known = robot_digest(name)
@@ -114,8 +114,10 @@ def walker_of(recorded: RecordedRobot | None, given: str | None, where: object) 
         ) from None
     if known == recorded.sha256:
         said = given is not None or name == DEFAULT_ROBOT
-        return Walker(name, "" if said else f"{where} was walked by {name}, whose legs are taken")
-    return Walker(name, _stand_in(recorded, name, where))
+        return PlannedRobot(
+            name, "" if said else f"{where} was walked by {name}, whose legs are taken"
+        )
+    return PlannedRobot(name, _stand_in(recorded, name, where))
 
 
 def _stand_in(recorded: RecordedRobot, name: str, where: object) -> str:

@@ -4,6 +4,9 @@ from .fit import split_by_terrain as split_by_terrain
 from .foresight import SurrogateForesight as SurrogateForesight
 from .label_files import Labels as Labels
 from .label_files import read_labels as read_labels
+from .labelled_paths import LabelledPaths as LabelledPaths
+from .labelled_paths import join as join
+from .labelled_paths import label_paths as label_paths
 from .network import initial_weights as initial_weights
 from .settings import FitSettings as FitSettings
 from .surrogate import Identity as Identity
@@ -11,6 +14,3 @@ from .surrogate import Surrogate as Surrogate
 from .surrogate_file import read_surrogate as read_surrogate
 from .surrogate_file import require_fit as require_fit
 from .surrogate_file import write_surrogate as write_surrogate
-from .walks import LabelledWalks as LabelledWalks
-from .walks import join as join
-from .walks import label_walks as label_walks

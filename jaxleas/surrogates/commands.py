@@ -82,7 +82,7 @@ def fit(
     def progress(epoch: int, loss: float) -> None:
         print(f"epoch {epoch} of {epochs}: {loss:.5f} nats on the terrain held out", flush=True)
 
-    surrogate = fit_surrogate(found.walks, found.atlas, env, identity, settings, progress)
+    surrogate = fit_surrogate(found.paths, found.atlas, env, identity, settings, progress)
     write_surrogate(out, surrogate)
     print(describe(surrogate.report))
     if found.passed_over:

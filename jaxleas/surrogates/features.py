@@ -55,7 +55,7 @@ def near_points(
     return np.flatnonzero((ahead < window[0]) & (np.abs(beside) < window[1]))
 
 
-def walk_features(
+def path_features(
     heights_in_root: Float[Array, "*batch points"],
     motion: RootMotion,
     last: RootMotion,

@@ -13,7 +13,7 @@ from jax import Array
 from jaxtyping import Float, Int
 
 from jaxleas.conditions import LookAround
-from jaxleas.surrogates.features import walk_features
+from jaxleas.surrogates.features import path_features
 from jaxleas.surrogates.surrogate import Surrogate
 from jaxleas.surrogates.turns import all_at_once, in_turn
 from jaxleas.types import InputError, RootMotion
@@ -117,7 +117,7 @@ class SurrogateForesight:
         """Return hidden state and hazard after a kept configuration."""
         identity = self.surrogate.identity
         height_range = identity.height_low, identity.height_high
-        features = walk_features(
+        features = path_features(
             heights, motion, last, identity.keep_every, height_range, identity.pace
         )
         return self.surrogate.hazard(hidden, features)

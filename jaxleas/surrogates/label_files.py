@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.guide import read_guide_paths
+from jaxleas.surrogates.labelled_paths import LabelledPaths, join, label_paths
 from jaxleas.surrogates.verdict_files import (
     Finder,
     is_same_planning,
@@ -16,7 +17,6 @@ from jaxleas.surrogates.verdict_files import (
     require_paths,
     robot_of,
 )
-from jaxleas.surrogates.walks import LabelledWalks, join, label_walks
 from jaxleas.terrain import Atlas, load_scene, make_atlas, rasterise
 from jaxleas.types import InputError
 
@@ -32,8 +32,8 @@ class Labels:
         parameters: parameters of the planner.
         robot: name of the robot whose contacts were planned.
         robot_digest: SHA-256 of that robot's file; None where the labels do not say.
-        walks: labelled walks.
-        atlas: terrains of the walks.
+        paths: labelled paths.
+        atlas: terrains of the paths.
         passed_over: number of guide paths without a verdict, because the planner's time limit came
             first.
     """
@@ -42,7 +42,7 @@ class Labels:
     parameters: dict[str, Any]
     robot: str
     robot_digest: str | None
-    walks: LabelledWalks
+    paths: LabelledPaths
     atlas: Atlas
     passed_over: int
 
@@ -95,7 +95,7 @@ def read_labels(
             continue
         chosen = [paths[each["path"]] for each in verdicts]
         parts.append(
-            label_walks(
+            label_paths(
                 chosen,
                 [each["last_index"] for each in verdicts],
                 [scenes[provenance["scene"]["sha256"]]] * len(verdicts),
@@ -112,7 +112,7 @@ def read_labels(
         robot_digest=next(
             filter(None, (robot_of(each["provenance"])[1] for each in contents)), None
         ),
-        walks=join(parts).trimmed(),
+        paths=join(parts).trimmed(),
         atlas=make_atlas(maps),
         passed_over=passed_over,
     )

@@ -13,12 +13,12 @@ from jaxleas.surrogates.calibration import (
     expected_calibration_error,
     log_loss,
 )
-from jaxleas.surrogates.walks import LabelledWalks
+from jaxleas.surrogates.labelled_paths import LabelledPaths
 
-Scored = tuple[np.ndarray, LabelledWalks]  # calibrated logits of the hazard, and their walks
+Scored = tuple[np.ndarray, LabelledPaths]  # calibrated logits of the hazard, and their paths
 
 
-def report_on(calibration: Scored, judged: Scored, learned: LabelledWalks) -> dict[str, Any]:
+def report_on(calibration: Scored, judged: Scored, learned: LabelledPaths) -> dict[str, Any]:
     """Return the report as plain JSON values.
 
     A *stretch* leads from one kept configuration to the next. The predicted probability that a
@@ -37,18 +37,18 @@ def report_on(calibration: Scored, judged: Scored, learned: LabelledWalks) -> di
     }
 
 
-def _stretches(logit: np.ndarray, walks: LabelledWalks) -> tuple[np.ndarray, np.ndarray]:
-    known = walks.is_known
-    return _sigmoid(logit[known]), walks.failed[known]
+def _stretches(logit: np.ndarray, paths: LabelledPaths) -> tuple[np.ndarray, np.ndarray]:
+    known = paths.is_known
+    return _sigmoid(logit[known]), paths.failed[known]
 
 
-def _guides(logit: np.ndarray, walks: LabelledWalks) -> tuple[np.ndarray, np.ndarray]:
-    return failure_along(logit, walks), walks.failed_at >= 0
+def _guides(logit: np.ndarray, paths: LabelledPaths) -> tuple[np.ndarray, np.ndarray]:
+    return failure_along(logit, paths), paths.failed_at >= 0
 
 
-def failure_along(logit: np.ndarray, walks: LabelledWalks) -> np.ndarray:
-    """Return the probability of a failure somewhere along each walk: 1 - prod(1 - hazard)."""
-    there = np.arange(logit.shape[1])[None] < walks.kept[:, None]
+def failure_along(logit: np.ndarray, paths: LabelledPaths) -> np.ndarray:
+    """Return the probability of a failure somewhere along each path: 1 - prod(1 - hazard)."""
+    there = np.arange(logit.shape[1])[None] < paths.kept[:, None]
     passing = -np.logaddexp(0.0, logit)  # log(1 - hazard)
     return 1.0 - np.exp(np.sum(passing * there, axis=1))
 

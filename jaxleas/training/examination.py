@@ -58,7 +58,7 @@ def make_examination(
         def advance(carry):
             step, episode, reached, failed = carry
             seen = normalise(signature.pack(task.look(world, episode)), normaliser)
-            action = signature.mode(networks.judged(policy, seen))
+            action = signature.mode(networks.plain(policy, seen))
             disturbance = ()
             if task.is_disturbed:
                 now = jax.random.fold_in(disturbance_key, step)
@@ -95,7 +95,7 @@ class HostExaminer:
         signature, networks = self.task.signature, self.networks
 
         def act(normaliser: Any, policy: Any, observation: Array) -> Any:
-            return signature.mode(networks.judged(policy, normalise(observation, normaliser)))
+            return signature.mode(networks.plain(policy, normalise(observation, normaliser)))
 
         self._act = jax.jit(act)
 

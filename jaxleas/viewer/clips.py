@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 
 from jaxleas.contacts import ContactPlan, ContactProblem, read_plan, read_problem
 from jaxleas.guide import read_guide_paths
-from jaxleas.robots import Robot, height_complaint, walker_of
+from jaxleas.robots import Robot, height_complaint, robot_for
 from jaxleas.terrain import HeightMap
 from jaxleas.types import GuidePath, InputError, RootPose, is_ground
 from jaxleas.viewer.footholds import Foothold, footholds_of
@@ -67,7 +67,7 @@ def read_guide_clips(path: Path, named: str | None = None) -> list[Clip]:
         InputError: the file cannot be used, or its paths are another robot's than the named one's.
     """
     file = read_guide_paths(path)
-    robot = None if file.robot is None else walker_of(file.robot, named, path).name
+    robot = None if file.robot is None else robot_for(file.robot, named, path).name
     reasons = file.reasons or [""] * len(file.paths)
     return [
         replace(guide_clip(f"path {index} {reason}".strip(), each), robot=robot)

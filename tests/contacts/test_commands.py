@@ -127,8 +127,8 @@ def test_a_damaged_plan_is_refused(folder, change: dict, words: str) -> None:
 def test_the_picture_of_a_failure_marks_the_step(tmp_path) -> None:
     asked = problem(stones(0.45))
     plan = plan_mip(asked)
-    assert plan.last_feasible_phase is not None
-    failing = asked.steps[plan.last_feasible_phase + 1]
+    assert plan.last_feasible_step is not None
+    failing = asked.steps[plan.last_feasible_step + 1]
     assert failing_candidates(asked, plan) == failing.candidates
     draw_plan(tmp_path / "a.svg", asked, plan)
     assert "ff00ff" in (tmp_path / "a.svg").read_text()

@@ -105,7 +105,7 @@ def test_the_window_holds_the_feet_near_the_guide() -> None:
         problem_from_guide(guide, aside, "talos", Stepping(every=30, window=1.0))
     ).feasible
     plan = plan_mip(problem_from_guide(guide, aside, "talos", Stepping(every=30, window=0.8)))
-    assert (plan.status, plan.last_feasible_phase) == ("infeasible", -1)
+    assert (plan.status, plan.last_feasible_step) == ("infeasible", -1)
     assert "LF onto 'ahead'" in plan.reason
     assert "which is not among its candidates" in plan.reason
 
@@ -137,7 +137,7 @@ def test_a_walk_over_the_floor_can_be_planned_and_a_gap_cannot() -> None:
     gap = scene(a=rectangle(-1, 1, -1, 1), b=rectangle(1.9, 5, -1, 1))
     plan = plan_mip(problem_from_guide(straight(3.0, 0.016), gap, "talos"))
     assert plan.status == "infeasible"
-    assert plan.last_feasible_phase is not None
+    assert plan.last_feasible_step is not None
     assert "first step that cannot be made" in plan.reason
 
 

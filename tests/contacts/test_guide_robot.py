@@ -9,7 +9,7 @@ import pytest
 from jaxleas import cli
 from jaxleas.contacts import read_plan
 from jaxleas.contacts.checking import followed_by
-from jaxleas.contacts.guide_file import read_walked
+from jaxleas.contacts.guide_file import read_recorded_guide
 from jaxleas.contacts.guide_robot import heights_above_ground
 from jaxleas.guide import read_guide_paths, write_guide_paths
 from jaxleas.labels import read_verdicts
@@ -64,7 +64,7 @@ def test_the_robot_is_recorded_and_planned_with(here, capsys) -> None:
     recorded = read_guide_paths("g1.npz").robot
     assert recorded is not None
     assert recorded.name == "g1"
-    assert read_walked("g1.npz").robot == recorded
+    assert read_recorded_guide("g1.npz").robot == recorded
     run(f"contacts g1.npz --scene {FLOOR} --out plan.json --problem problem.json")
     assert "g1.npz was walked by g1, whose legs are taken" in capsys.readouterr().out
     assert json.loads((here / "problem.json").read_text())["robot"] == "g1"

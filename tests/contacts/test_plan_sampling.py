@@ -50,7 +50,7 @@ def run(line: str) -> None:
 def test_a_plan_says_where_each_step_goes(climb) -> None:
     assert (climb.planner, climb.status, climb.reason) == ("sampling", "feasible", "")
     assert climb.max_violation <= 1e-6
-    assert climb.last_feasible_phase == len(climb.surfaces) - 1 == len(climb.footholds) - 1
+    assert climb.last_feasible_step == len(climb.surfaces) - 1 == len(climb.footholds) - 1
     assert climb.surfaces[-1] in ("step_4", "step_5")
     assert [each.configuration for each in climb.postures][:: len(climb.postures) - 1] == [0, 120]
     assert len(climb.robustness) == len(climb.postures)
@@ -169,7 +169,7 @@ def test_what_was_reached_is_kept_where_the_walk_stops() -> None:
     assert 0 < plan.postures[-1].configuration < 200
     assert plan.max_violation <= 1e-6
     aside = plan_sampling(straight(4.0, y=2.9), hole(), robot=TALOS)
-    assert (aside.status, aside.last_feasible_phase, aside.max_violation) == ("not_found", -1, None)
+    assert (aside.status, aside.last_feasible_step, aside.max_violation) == ("not_found", -1, None)
 
 
 def test_why_neither_foot_moved_is_explained_whatever_the_words(monkeypatch) -> None:

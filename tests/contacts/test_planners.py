@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.programs.explanation import explain, find_blame
 from jaxleas.contacts.programs.mip import plan_mip
-from jaxleas.contacts.programs.prefix import last_feasible_phase
+from jaxleas.contacts.programs.prefix import last_feasible_step
 from jaxleas.contacts.programs.sl1m import plan_sl1m
 from jaxleas.types.errors import InputError
 from tests.contacts.worlds import (
@@ -117,8 +117,8 @@ def test_the_last_phase_is_that_of_brute_force() -> None:
         plan = plan_mip(problem(described))
         prefixes = [{**described, "phases": described["phases"][:n]} for n in range(1, 5)]
         expected = max((n for n, each in enumerate(prefixes) if twin(each)), default=-1)
-        assert plan.last_feasible_phase == expected, seed
-        last = plan_sl1m(problem(described)).last_feasible_phase
+        assert plan.last_feasible_step == expected, seed
+        last = plan_sl1m(problem(described)).last_feasible_step
         assert last is not None
         assert last <= expected
         found.add(expected)
@@ -145,7 +145,7 @@ def test_plans_keep_their_problem(planner: str, model: str) -> None:
     asked = problem(stones(0.1, rise=0.1, model=model))
     plan = PROGRAMS[planner](asked)
     assert plan.status == "feasible"
-    assert plan.last_feasible_phase == len(asked) - 1
+    assert plan.last_feasible_step == len(asked) - 1
     assert certify(asked, plan).certified
     assert (plan.com is None) == (model == "feet")
 
@@ -196,7 +196,7 @@ def test_the_last_step_that_can_be_made(planner: str, model: str) -> None:
         asked = problem(content(surfaces, names, model))
         plan = PROGRAMS[planner](asked)
         assert plan.status == "infeasible"
-        assert plan.last_feasible_phase == good - 1
+        assert plan.last_feasible_step == good - 1
         assert not plan.feasible
         assert f"step {good}" in plan.reason
 
@@ -210,10 +210,10 @@ def test_dichotomic_search_asks_few_questions() -> None:
             questions.append(len(prefix))
             return "optimal" if len(prefix) <= last + 1 else "infeasible"
 
-        assert last_feasible_phase(asked, judge) == last
+        assert last_feasible_step(asked, judge) == last
         assert len(questions) <= 6
         late = lambda prefix: "time_limit"  # noqa: E731
-    assert last_feasible_phase(asked, late) is None
+    assert last_feasible_step(asked, late) is None
 
 
 def test_the_reason_says_how_much_is_missing() -> None:
@@ -221,7 +221,7 @@ def test_the_reason_says_how_much_is_missing() -> None:
         {"a": rectangle(-0.5, 0.0, -0.5, 0.5), "b": rectangle(0.34, 1, -0.5, 0.5)}, [["b"]]
     )
     plan = plan_mip(problem(described))
-    assert plan.last_feasible_phase == -1
+    assert plan.last_feasible_step == -1
     assert "step 0 (LF onto 'b') is the first step that cannot be made" in plan.reason
     assert "with at most 0.05 m more reach of the step" in plan.reason
     assert "onto 'a', which is not among its candidates" in plan.reason
@@ -260,7 +260,7 @@ def test_a_long_way_needs_the_reaches_together() -> None:
 def test_an_explanation_that_runs_late_says_so() -> None:
     """What was not found in time is not said to be of no help."""
     asked = problem(stones(0.45))
-    last = plan_mip(asked).last_feasible_phase
+    last = plan_mip(asked).last_feasible_step
     assert last is not None
     late = explain(asked, last + 1, deadline=time.perf_counter())
     assert "the time ran out" in late
@@ -304,7 +304,7 @@ def test_a_time_limit_is_no_verdict(planner: str) -> None:
         assert plan.status == "time_limit"
         assert not plan.feasible
         assert "not decided within the time limit" in plan.reason
-        assert plan.last_feasible_phase is None
+        assert plan.last_feasible_step is None
     assert time.perf_counter() - begin < 20.0
 
 

@@ -111,7 +111,7 @@ def test_contacts_say_it_with_a_cause(tmp_path, capsys, monkeypatch) -> None:
         cli.run(f"contacts walks.npz --scene scene.json --out p.json --planner {planner}".split())
         plan = read_plan("p.json")
         assert (plan.feasible, plan.cause, plan.guide_ended) == (False, "collision", "reached")
-        assert (plan.last_feasible_phase or 0) > 1
+        assert (plan.last_feasible_step or 0) > 1
     capsys.readouterr()
     line = "contacts walks.npz --scene scene.json --out p.json --query 1 --problem problem.json"
     cli.run(line.split())

@@ -109,7 +109,7 @@ def test_whole_episodes_are_walked_and_remember_who_walked_them(training, ground
         assert valid[robot].sum() == steps + 1 - ended
         assert valid[robot, : steps + 1 - ended].all()
     seen = normalise(episodes.observation, state.normaliser)
-    logits = training.networks.judged(state.params.policy, seen)
+    logits = training.networks.plain(state.params.policy, seen)
     (normal,) = training.networks.signature.distributions(logits)
     np.testing.assert_allclose(episodes.location, normal.location, atol=1e-5)
     np.testing.assert_allclose(episodes.deviation, normal.deviation, atol=1e-5)

@@ -104,7 +104,7 @@ def test_a_method_of_ones_own_stands_side_by_side(run, flat_suite, tmp_path, ask
     (tmp_path / "own_contender.py").write_text(OWN_METHOD)
     candidate, names = load_candidate(run), ["own_contender:Still", "rb_lin"]
     contenders = make_contenders(candidate, wanted=names)
-    assert list(contenders.walkers) == ["rb_lin", "own_contender:Still"]
+    assert list(contenders.methods) == ["rb_lin", "own_contender:Still"]
     found = compare(candidate, contenders, flat_suite, Planning(("mip",)))
     own = [each for each in found.cells if each.method == "own_contender:Still"]
     assert [each.reached for each in own] == [0.0, 0.0]

@@ -7,10 +7,10 @@ from jaxleas.contacts.sampling import SamplingSettings
 from jaxleas.evaluation.exact import (
     Bookkeeping,
     ask,
+    contender,
     judge_exact,
     result_key,
     summarise_plans,
-    walker,
 )
 from jaxleas.evaluation.judge import roll_out_cell
 from jaxleas.evaluation.starts import draw_starts, make_grounds
@@ -85,7 +85,7 @@ def test_the_share_is_of_all_starts_and_the_means_are_of_what_succeeded(env, two
 
 def test_every_guide_path_is_judged_over_its_own_scene(env, two_scenes):
     oracle = Oracle(lambda number: (True,))
-    judge_exact(env, {"fly": walker(env, Fly())}, two_scenes, {"sampling": oracle})
+    judge_exact(env, {"fly": contender(env, Fly())}, two_scenes, {"sampling": oracle})
     ((scenes, paths, index),) = oracle.asked
     for path, each in zip(paths, index, strict=True):
         (floor,) = scenes[each].surfaces.values()
@@ -95,7 +95,7 @@ def test_every_guide_path_is_judged_over_its_own_scene(env, two_scenes):
 
 def test_methods_and_planners_share_starts_and_guides(env, flat_suite):
     yes, no = Oracle(lambda number: (True,)), Oracle(lambda number: (False,))
-    walkers = {"fly": walker(env, Fly()), "still": walker(env, StandStill())}
+    walkers = {"fly": contender(env, Fly()), "still": contender(env, StandStill())}
     results = judge_exact(env, walkers, flat_suite, {"sampling": yes, "mip": no})
     assert [(each.yaw, each.method, each.planner, each.planned) for each in results] == [
         (yaw, method, planner, 1.0 if (method, planner) == ("fly", "sampling") else 0.0)
@@ -126,7 +126,7 @@ def test_what_is_known_is_neither_walked_nor_asked_again(env, flat_suite):
 
 
 def test_without_planners_the_walks_are_counted(env, flat_suite):
-    results = judge_exact(env, {"fly": walker(env, Fly())}, flat_suite, {})
+    results = judge_exact(env, {"fly": contender(env, Fly())}, flat_suite, {})
     assert [(each.planner, each.planned, each.reached) for each in results] == [
         (None, None, 1.0)
     ] * 2
@@ -135,8 +135,8 @@ def test_without_planners_the_walks_are_counted(env, flat_suite):
 def test_the_sampling_planner_follows_a_walk_but_no_leap(env, flat_suite):
     suite = replace(flat_suite, cells=flat_suite.cells[:1])
     walkers = {
-        "fly": walker(env, Fly()),
-        "rb_lin": walker(env, rb_lin(env.config.limits, env.config.desired_speed)),
+        "fly": contender(env, Fly()),
+        "rb_lin": contender(env, rb_lin(env.config.limits, env.config.desired_speed)),
     }
     with Judge("sampling", SamplingSettings(samples=4000), robot="talos") as planner:
         leap, steps = judge_exact(env, walkers, suite, {"sampling": planner})

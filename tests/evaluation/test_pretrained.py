@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import judge_exact, walker
+from jaxleas.evaluation.contender import contender
+from jaxleas.evaluation.exact import judge_exact
 from jaxleas.evaluation.examination import examine, load_candidate
 from jaxleas.evaluation.suites import Suite, make_suite
 from jaxleas.guide.leas import leas
@@ -41,7 +42,9 @@ def test_a_policy_that_knows_its_planner_is_planned_for(planner, name, cells):
     suite = suite_of(name, 10)
     suite = replace(suite, cells=tuple(each for each in suite.cells if each.name in cells))
     with Judge(planner, robot="talos") as judge:
-        results = judge_exact(env, {"p2": walker(env, leas(env, policy))}, suite, {planner: judge})
+        results = judge_exact(
+            env, {"p2": contender(env, leas(env, policy))}, suite, {planner: judge}
+        )
     # 98 % in the worst of these cells: one miss a cell, and two in all, are within chance.
     missed = [round(each.starts * (1.0 - (each.planned or 0.0))) for each in results]
     assert max(missed) <= 1

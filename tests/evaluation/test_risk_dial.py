@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.envs.steering.env import SteeringEnv
-from jaxleas.evaluation.exact import Judged
+from jaxleas.evaluation.exact_answers import Judged
 from jaxleas.evaluation.judge import roll_out_cell, summarise
 from jaxleas.evaluation.refusal import load_refusal
 from jaxleas.evaluation.risk_dial import Guides, as_json, foresee, join, sweep

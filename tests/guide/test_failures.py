@@ -13,7 +13,7 @@ from jaxleas.files import write_npz
 from jaxleas.guide import read_guide_paths, write_guide_paths
 from jaxleas.guide.commands import rollout
 from jaxleas.guide.failures import Failure, failures_on_map
-from jaxleas.guide.reconfirming import Walked, reconfirm_walks
+from jaxleas.guide.reconfirming import EndedPaths, reconfirm
 from jaxleas.robots import load_talos
 from jaxleas.terrain import HeightMap, Scene, make_atlas, write_height_map, write_scene
 from jaxleas.training.policy import write_policy
@@ -61,9 +61,9 @@ def test_the_worst_condition_is_named_with_its_margin() -> None:
 
 def test_polygons_end_a_path_that_the_map_let_pass() -> None:
     path, free = straight(2.0), straight(2.0, y=1.0)
-    walked = Walked((path, free), ("reached", "stopped"), (None, None))
+    walked = EndedPaths((path, free), ("reached", "stopped"), (None, None))
     names = ("strict_reachability", "collision")
-    found = reconfirm_walks(load_talos(), Scene(flat().surfaces, POST), names, walked)
+    found = reconfirm(load_talos(), Scene(flat().surfaces, POST), names, walked)
     assert found.reasons == ("invalid", "stopped")
     assert (found.refused(), found.mistaken()) == (1, 0)
     cut = found.paths[0]
@@ -74,15 +74,15 @@ def test_polygons_end_a_path_that_the_map_let_pass() -> None:
     assert found.failures[0] == Failure("collision", None, exactly=True)
     assert Failure("collision", None, exactly=True).at(cut).endswith(", on the terrain's polygons")
     assert len(found.paths[1]) == len(free)
-    alone = reconfirm_walks(load_talos(), Scene(flat().surfaces, POST), names[:1], walked)
+    alone = reconfirm(load_talos(), Scene(flat().surfaces, POST), names[:1], walked)
     assert alone.reasons == walked.reasons  # C did not judge on the map, nor does its twin
 
 
 def test_a_refusal_of_the_map_alone_stands_and_is_said() -> None:
     path = straight(1.0)
     path.valid[-1] = False
-    mistaken = Walked((path,), ("invalid",), (Failure("collision", -0.02),))
-    found = reconfirm_walks(load_talos(), flat(), ("collision",), mistaken)
+    mistaken = EndedPaths((path,), ("invalid",), (Failure("collision", -0.02),))
+    found = reconfirm(load_talos(), flat(), ("collision",), mistaken)
     assert found.reasons == ("invalid",)
     assert found.mistaken() == 1
     (failure,) = found.failures
@@ -90,8 +90,8 @@ def test_a_refusal_of_the_map_alone_stands_and_is_said() -> None:
     assert "margin -0.02 m (the exact conditions hold there)" in failure.at(path)
     inside = straight(1.0, start=1.48)
     inside.valid[:] = np.arange(len(inside)) < 20
-    right = Walked((inside[:21],), ("invalid",), (Failure("collision", -0.5),))
-    assert reconfirm_walks(load_talos(), wall(), ("collision",), right).mistaken() == 0
+    right = EndedPaths((inside[:21],), ("invalid",), (Failure("collision", -0.5),))
+    assert reconfirm(load_talos(), wall(), ("collision",), right).mistaken() == 0
 
 
 def test_failures_survive_a_file(tmp_path) -> None:

@@ -13,7 +13,7 @@ from jaxleas.labels import (
     Sl1mSettings,
     judge_shard,
     label_shards,
-    plan_shards,
+    make_shards,
     read_verdicts,
 )
 from jaxleas.labels.commands import label
@@ -36,7 +36,7 @@ def work(tmp_path):
 
 
 def shards_of(folder, settings=SETTINGS):
-    return plan_shards(
+    return make_shards(
         [folder / "walks.npz"],
         folder / "hole.json",
         Oracle("sampling", settings, robot="talos"),
@@ -125,7 +125,7 @@ def test_a_shard_written_by_a_worker_that_died_is_not_judged_twice(work):
 def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
     folder, _ = work
     name = "sl1m" if isinstance(settings, Sl1mSettings) else "mip"
-    shards = plan_shards(
+    shards = make_shards(
         [folder / "walks.npz"],
         folder / "hole.json",
         Oracle(name, settings, robot="talos"),
@@ -142,21 +142,21 @@ def test_every_planner_leaves_its_parameters_in_the_file(work, settings):
 def test_bad_input_is_one_sentence(work):
     folder, _ = work
     with pytest.raises(InputError, match="no planner 'magic'"):
-        plan_shards(
+        make_shards(
             [folder / "walks.npz"],
             folder / "hole.json",
             Oracle("magic", SETTINGS, robot="talos"),
             folder / "out",
         )
     with pytest.raises(InputError, match="two guide path files are called walks"):
-        plan_shards(
+        make_shards(
             [folder / "walks.npz"] * 2,
             folder / "hole.json",
             Oracle("sampling", SETTINGS, robot="talos"),
             folder / "out",
         )
     with pytest.raises(InputError, match="takes MipSettings, not SamplingSettings"):
-        plan_shards(
+        make_shards(
             [folder / "walks.npz"],
             folder / "hole.json",
             Oracle("mip", SETTINGS, robot="talos"),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jaxleas.robots import RecordedRobot, load_robot, load_talos, walker_of, write_robot
+from jaxleas.robots import RecordedRobot, load_robot, load_talos, robot_for, write_robot
 from jaxleas.robots.heights import height_complaint
 from jaxleas.types import InputError
 
@@ -40,37 +40,37 @@ def test_a_damaged_record_is_refused(change) -> None:
 
 def test_the_robot_that_walked_is_planned_with() -> None:
     g1, talos = RecordedRobot.of("g1"), RecordedRobot.of("talos")
-    assert walker_of(g1, "g1", "p.npz").note == ""
-    assert walker_of(talos, None, "p.npz").note == ""
-    meant = walker_of(g1, None, "p.npz")
+    assert robot_for(g1, "g1", "p.npz").note == ""
+    assert robot_for(talos, None, "p.npz").note == ""
+    meant = robot_for(g1, None, "p.npz")
     assert (meant.name, meant.note) == ("g1", "p.npz was walked by g1, whose legs are taken")
-    assert walker_of(None, None, "p.npz").name == "talos"
-    assert walker_of(None, "g1", "p.npz").name == "g1"
+    assert robot_for(None, None, "p.npz").name == "talos"
+    assert robot_for(None, "g1", "p.npz").name == "g1"
 
 
 def test_another_robots_path_is_refused() -> None:
     with pytest.raises(
         InputError, match=r"robot 'g1', with its root 0\.7 m .* talos walks at 0\.95"
     ):
-        walker_of(RecordedRobot.of("g1"), "talos", "p.npz")
+        robot_for(RecordedRobot.of("g1"), "talos", "p.npz")
     gone = replace(RecordedRobot.of("g1"), name="walker")
     with pytest.raises(InputError, match="'walker', which is not known here: give its file by"):
-        walker_of(gone, None, "p.npz")
+        robot_for(gone, None, "p.npz")
     with pytest.raises(InputError, match="there is no robot 'nobody'"):
-        walker_of(gone, "nobody", "p.npz")
+        robot_for(gone, "nobody", "p.npz")
 
 
 def test_a_robot_that_walks_as_high_may_stand_in(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     write_robot("robots/heavy.json", replace(load_talos(), name="heavy", mass=120.0))
     talos, heavy = RecordedRobot.of("talos"), RecordedRobot.of("heavy")
-    assert "walked by robot 'talos'; the legs of heavy" in walker_of(talos, "heavy", "p.npz").note
+    assert "walked by robot 'talos'; the legs of heavy" in robot_for(talos, "heavy", "p.npz").note
     write_robot("robots/heavy.json", replace(load_talos(), name="heavy", mass=130.0))
-    assert "another robot of this name" in walker_of(heavy, None, "p.npz").note
+    assert "another robot of this name" in robot_for(heavy, None, "p.npz").note
     lower = replace(load_talos(), name="heavy", walking_height=0.8)
     write_robot("robots/heavy.json", lower)
     with pytest.raises(InputError, match="another robot of this name, with its root"):
-        walker_of(heavy, None, "p.npz")
+        robot_for(heavy, None, "p.npz")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from jaxleas.contacts.planner_settings import settings_from
 from jaxleas.envs.steering import SteeringConfig
 from jaxleas.files import read_json, read_npz, write_json, write_npz
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import Here, Oracle, label_shards, plan_shards
+from jaxleas.labels import Here, Oracle, label_shards, make_shards
 from jaxleas.robots import robot_digest
 from jaxleas.surrogates import (
     Surrogate,
@@ -99,7 +99,7 @@ def labelled(tmp_path_factory):
         write_scene(folder / f"scene_{number}.json", Scene({"floor": floor}))
         paths = [wander(generator, 4) for _ in range(4)]
         write_guide_paths(folder / f"guides_{number}.npz", paths, ["stopped"] * 4)
-        shards = plan_shards(
+        shards = make_shards(
             [folder / f"guides_{number}.npz"],
             folder / f"scene_{number}.json",
             Oracle("sampling", settings_from("sampling", samples=500), robot="talos"),
@@ -113,13 +113,13 @@ def test_label_folders_are_read_with_paths_and_terrain(labelled):
     labels = read_labels([labelled / "verdicts"], [], 0.1)
     assert labels.planner == "sampling"
     assert labels.parameters["samples"] == 500
-    assert len(labels.walks) == 8
+    assert len(labels.paths) == 8
     assert len(labels.atlas) == 2
-    np.testing.assert_array_equal(np.sort(labels.walks.map_index), [0] * 4 + [1] * 4)
+    np.testing.assert_array_equal(np.sort(labels.paths.map_index), [0] * 4 + [1] * 4)
     verdicts = read_json(labelled / "verdicts" / "guides_0" / "verdicts_000000.json")["verdicts"]
     reached = [each["last_index"] // KEEP_EVERY + 1 for each in verdicts]
     expected = [-1 if each == 4 else each for each in reached]
-    np.testing.assert_array_equal(labels.walks.failed_at[:4], expected)
+    np.testing.assert_array_equal(labels.paths.failed_at[:4], expected)
 
 
 def test_a_scene_that_changed_or_is_missing_is_refused(labelled, tmp_path):
@@ -131,7 +131,7 @@ def test_a_scene_that_changed_or_is_missing_is_refused(labelled, tmp_path):
     write_json(tmp_path / "scene_0.json", scene)
     with pytest.raises(InputError, match="its content has changed"):
         read_labels([tmp_path / "v"], [], 0.1)
-    assert len(read_labels([tmp_path / "v"], [labelled], 0.1).walks) == 8
+    assert len(read_labels([tmp_path / "v"], [labelled], 0.1).paths) == 8
 
 
 def test_verdicts_of_two_planners_do_not_mix(labelled, tmp_path):
@@ -187,7 +187,7 @@ def test_old_labels_that_name_no_robot_are_of_talos_and_go_with_new_ones(labelle
     labels = read_labels([folder], [labelled], 0.1)
     assert labels.robot == "talos"
     assert labels.robot_digest == robot_digest("talos")
-    assert len(labels.walks) == 8
+    assert len(labels.paths) == 8
 
 
 def fit_to(labelled, tmp_path, *options, **robot):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jaxleas.surrogates import FitSettings, fit, foreseen_failure, label_walks
+from jaxleas.surrogates import FitSettings, fit, foreseen_failure, label_paths
 from jaxleas.surrogates.fit import split_by_terrain
 from jaxleas.types import InputError
 
@@ -16,7 +16,7 @@ def walks_of(planner, count, seed=0):
     generator = np.random.default_rng(seed)
     paths = [wander(generator, KEPT) for _ in range(count)]
     last = [planner(path, generator) for path in paths]
-    return label_walks(paths, last, np.arange(count) % MAPS, KEEP_EVERY, KEPT)
+    return label_paths(paths, last, np.arange(count) % MAPS, KEEP_EVERY, KEPT)
 
 
 def coin(path, generator):
@@ -78,7 +78,7 @@ def test_what_comes_after_a_failure_is_unknown():
     generator = np.random.default_rng(0)
     paths = [wander(generator, KEPT) for _ in range(4)]
     last = [-1, 0, KEEP_EVERY + 2, len(paths[3]) - 1]
-    walks = label_walks(paths, last, [0, 0, 0, 0], KEEP_EVERY, KEPT)
+    walks = label_paths(paths, last, [0, 0, 0, 0], KEEP_EVERY, KEPT)
     np.testing.assert_array_equal(walks.failed_at, [0, 1, 2, -1])
     np.testing.assert_array_equal(walks.known, [1, 2, 3, KEPT])
     np.testing.assert_array_equal(walks.is_known.sum(axis=1), walks.known)

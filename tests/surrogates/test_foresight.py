@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas.surrogates import Surrogate, SurrogateForesight
-from jaxleas.surrogates.features import MOTION_FEATURES, walk_features
+from jaxleas.surrogates.features import MOTION_FEATURES, path_features
 from jaxleas.surrogates.network import initial_weights
 from jaxleas.surrogates.turns import GROUP
 from jaxleas.types import InputError, RootMotion
@@ -48,7 +48,7 @@ def around(heights):
 
 def shown(heights, motion, last):
     """Features of a kept configuration."""
-    return walk_features(heights[:, NEAR], motion, last, KEEP_EVERY, (-1.4, -0.2))
+    return path_features(heights[:, NEAR], motion, last, KEEP_EVERY, (-1.4, -0.2))
 
 
 def test_survival_is_the_product_over_kept_configurations_alone():

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxleas.envs.steering import MotionLimits, SteeringConfig
-from jaxleas.surrogates.features import MOTION_FEATURES, Pace, mirrored, walk_features
+from jaxleas.surrogates.features import MOTION_FEATURES, Pace, mirrored, path_features
 from jaxleas.surrogates.network import initial_weights, recur
 from jaxleas.surrogates.surrogate import Identity
 from jaxleas.types import RootMotion
@@ -25,7 +25,7 @@ def test_features_equal_the_slow_twin():
     generator = np.random.default_rng(0)
     now, last = motion(generator), motion(generator)
     heights = generator.uniform(-3.0, 1.0, (6, 9)).astype(np.float32)
-    found = walk_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
+    found = path_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
     for row in range(6):
         yaw = float(now.yaw[row])
         into_root = np.array(
@@ -49,13 +49,13 @@ def test_a_faster_walk_has_the_same_features_in_its_own_pace():
     now, last = motion(generator), motion(generator)
     now, last = (each.replace(yaw=0.2 * each.yaw) for each in (now, last))
     heights = jnp.asarray(generator.uniform(-1.4, -0.2, (6, 9)), jnp.float32)
-    plain = walk_features(heights, now, last, 5, (-1.4, -0.2))
+    plain = path_features(heights, now, last, 5, (-1.4, -0.2))
     fast = Pace(speed=0.4, time_step=0.1, turn=0.07)  # twice as far in a step, four times as fast
     quick = [
         each.replace(position=2.0 * each.position, velocity=4.0 * each.velocity)
         for each in (now, last)
     ]
-    found = walk_features(heights, *quick, 5, (-1.4, -0.2), fast)
+    found = path_features(heights, *quick, 5, (-1.4, -0.2), fast)
     np.testing.assert_allclose(found, plain, atol=2e-5)
 
 
@@ -83,8 +83,8 @@ def test_features_of_a_mirrored_walk_are_the_mirrored_features():
 
     swapped = heights[:, order[: len(points)]]  # what lay to the left now lies to the right
     np.testing.assert_allclose(points[order[: len(points)]], points * [1, -1], atol=1e-9)
-    direct = walk_features(jnp.asarray(swapped), image(now), image(last), 5, (-1.4, -0.2))
-    plain = walk_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
+    direct = path_features(jnp.asarray(swapped), image(now), image(last), 5, (-1.4, -0.2))
+    plain = path_features(jnp.asarray(heights), now, last, 5, (-1.4, -0.2))
     np.testing.assert_allclose(direct, np.asarray(plain)[:, order] * sign, atol=2e-5)
 
 

@@ -172,7 +172,7 @@ def test_networks_answer_as_brax_networks_do():
     observation = jax.random.normal(jax.random.key(1), (5, 3, SIGNATURE.size))
     normalised = normalise(observation, normaliser)
     expected = brax.policy_network.apply(normaliser, params.policy, observation)
-    for answer in (networks.answer, networks.judged):
+    for answer in (networks.answer, networks.plain):
         np.testing.assert_allclose(answer(params.policy, normalised), expected, atol=1e-5)
     values = brax.value_network.apply(normaliser, params.value, observation)
     np.testing.assert_allclose(networks.values(params.value, normalised), values, atol=1e-5)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from jaxleas.guide.files import write_guide_paths
-from jaxleas.labels import Here, Oracle, label_shards, plan_shards, read_verdicts
+from jaxleas.labels import Here, Oracle, label_shards, make_shards, read_verdicts
 from jaxleas.labels.commands import label
 from jaxleas.terrain.scene import write_scene
 from jaxleas.types import InputError
@@ -73,7 +73,7 @@ def test_a_worker_killed_while_it_labels_costs_nothing_but_time(tmp_path):
 
     def shards(out):
         files = [tmp_path / "walks.npz"], tmp_path / "hole.json"
-        return plan_shards(*files, Oracle("sl1m", robot="talos"), tmp_path / out, a_shard=2)
+        return make_shards(*files, Oracle("sl1m", robot="talos"), tmp_path / out, a_shard=2)
 
     workers, killed = RayWorkers(2), []
 

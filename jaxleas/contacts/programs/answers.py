@@ -10,7 +10,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.explanation import explain
 from jaxleas.contacts.programs.linear_program import SolverStatus
 from jaxleas.contacts.programs.placement import Placement
-from jaxleas.contacts.programs.prefix import last_feasible_phase
+from jaxleas.contacts.programs.prefix import last_feasible_step
 
 
 def certified(
@@ -32,7 +32,7 @@ def certified(
         surfaces=surfaces,
         footholds=placement.footholds,
         com=placement.com,
-        last_feasible_phase=len(problem) - 1,
+        last_feasible_step=len(problem) - 1,
         seconds=seconds,
     )
     worst = certify(problem, plan)
@@ -59,11 +59,11 @@ def diagnosed(
     exact: bool,
 ) -> ContactPlan:
     """Add the last feasible step and, where proved, the reason why the next cannot be made."""
-    last = last_feasible_phase(problem, judge, dead_step)
+    last = last_feasible_step(problem, judge, dead_step)
     if last is None:
         return plan.but(reason=f"{plan.reason}; its time ran out before the failing step was found")
     if not exact or time.perf_counter() > deadline:
         return plan.but(
-            last_feasible_phase=last, reason=f"{plan.reason}; it stops before step {last + 1}"
+            last_feasible_step=last, reason=f"{plan.reason}; it stops before step {last + 1}"
         )
-    return plan.but(last_feasible_phase=last, reason=explain(problem, last + 1, deadline))
+    return plan.but(last_feasible_step=last, reason=explain(problem, last + 1, deadline))

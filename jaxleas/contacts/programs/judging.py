@@ -16,7 +16,7 @@ from jaxleas.contacts.from_guide import (
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.planner import PlannerError, mean_step
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.prefix import last_feasible_phase
+from jaxleas.contacts.programs.prefix import last_feasible_step
 from jaxleas.contacts.programs.settings import ProgramSettings
 from jaxleas.contacts.reference import widest_reference
 from jaxleas.contacts.trunk import trunk_collision
@@ -69,7 +69,7 @@ def judge_by_program(
     else:
         measures = PlannerMeasures(undecided=first.undecided, combinations=first.combinations)
         if not first.feasible:
-            last = last_feasible_phase(problem, search.status)
+            last = last_feasible_step(problem, search.status)
             stop = search.trouble if last is None else _first_not_made(problem, last + 1, first)
     return _verdict(_progress(number, path, settings, search.made), stop, begun, measures)
 
@@ -154,10 +154,10 @@ def _first_foot(robot: str, settings: ProgramSettings) -> str | None:
 
 def _around(robot: str, scene: Scene, path: GuidePath, window: float) -> Scene:
     """Return the scene's surfaces that a foot can come near to along the path."""
-    walker = load_robot(robot)
-    legs = [walker.limbs[index].range_of_motion.vertices[:, :2] for index in walker.feet]
+    planned = load_robot(robot)
+    legs = [planned.limbs[index].range_of_motion.vertices[:, :2] for index in planned.feet]
     reach = max(float(np.linalg.norm(each, axis=1).max()) for each in legs)
-    reach = max(reach, window) + widest_reference(walker) + MOST_ASIDE
+    reach = max(reach, window) + widest_reference(planned) + MOST_ASIDE
     places = np.asarray(path.position, dtype=np.float64)[:, :2]
     near = {}
     for name, vertices in scene.walkable.items():

@@ -6,7 +6,7 @@ from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.programs.linear_program import SolverStatus
 
 
-def last_feasible_phase(
+def last_feasible_step(
     problem: ContactProblem,
     can_be_made: Callable[[ContactProblem], SolverStatus | str],
     infeasible_step: int | None = None,

@@ -11,11 +11,11 @@ from jaxtyping import Float, Int
 from jaxleas.conditions import (
     Condition,
     Foresight,
-    Judge,
+    MarginFunction,
     Pick,
     extended,
     footprint_points,
-    make_judges,
+    make_conditions,
     read_from,
     with_points,
 )
@@ -61,7 +61,7 @@ class SteeringEnv:
     def __init__(
         self,
         config: SteeringConfig,
-        condition: Condition | Judge | None = None,
+        condition: Condition | MarginFunction | None = None,
         foresight: Foresight | None = None,
         allow: Collection[str] = (),
     ):
@@ -85,11 +85,13 @@ class SteeringEnv:
         # Points of the observation: places kept for the motion, then its grid.
         self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
         sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
-        named: Mapping[str, Condition | Judge] = {} if condition is None else {"own": condition}
+        named: Mapping[str, Condition | MarginFunction] = (
+            {} if condition is None else {"own": condition}
+        )
         if condition is None:
-            judges = make_judges(config.conditions, self.robot, sampled, config, allow)
-            condition, foresight = judges.condition, foresight or judges.foresight
-            named = judges.named
+            made = make_conditions(config.conditions, self.robot, sampled, config, allow)
+            condition, foresight = made.condition, foresight or made.foresight
+            named = made.named
         self.foresight = foresight
         # Points that the conditions read: only a few of all.
         self._judge = with_points(condition, sampled)

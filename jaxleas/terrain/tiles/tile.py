@@ -44,7 +44,7 @@ class TileFrame:
     size: float
     inset: float
 
-    def world(self, points: Float[np.ndarray, "V 2"]) -> Float[np.ndarray, "V 2"]:
+    def to_world(self, points: Float[np.ndarray, "V 2"]) -> Float[np.ndarray, "V 2"]:
         """Return points (s, t) of the tile in the world [m]."""
         along = np.array(self.direction, dtype=np.float64)
         left = np.array([-along[1], along[0]])
@@ -52,7 +52,7 @@ class TileFrame:
 
     def outline(self, rectangle: Rectangle) -> Float[np.ndarray, "4 2"]:
         """Return the corners of a rectangle of the tile in the world [m]."""
-        return self.world(_corners(rectangle, 0.0))
+        return self.to_world(_corners(rectangle, 0.0))
 
     def rectangle(
         self, rectangle: Rectangle, middle: float, slope: tuple[float, float] = (0.0, 0.0)
@@ -68,7 +68,7 @@ class TileFrame:
         centre = np.array([0.5 * (s_min + s_max), 0.5 * (t_min + t_max)])
         corners = _corners(rectangle, self.inset)
         z = middle + (corners - centre) @ np.array(slope)
-        return np.column_stack([self.world(corners), z])
+        return np.column_stack([self.to_world(corners), z])
 
 
 @dataclass(frozen=True)

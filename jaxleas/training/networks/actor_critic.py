@@ -56,7 +56,7 @@ class ActorCritic:
         """Return the critic's answer; the arguments are those of `answer`."""
         return self.critic.answer(value, seen, self.numbers)[..., 0]
 
-    def judged(self, policy: Any, seen: Float[Array, "*batch size"]) -> Array:
+    def plain(self, policy: Any, seen: Float[Array, "*batch size"]) -> Array:
         """Return the actor's answer as it is judged and exported."""
         return self.actor.plain(policy, self.signature.for_actor(seen))
 

@@ -14,7 +14,7 @@ def guide_kinds(folder: Path) -> list[Kind]:
     from jaxleas.contacts.guide_file import read_guide_path
     from jaxleas.guide.failures import Failure
     from jaxleas.guide.files import read_queries, write_guide_paths
-    from jaxleas.labels.label import plan_shards
+    from jaxleas.labels.label import make_shards
     from jaxleas.labels.oracle import Oracle
     from jaxleas.labels.shards import read_verdicts, write_shard
     from jaxleas.surrogates.label_files import read_labels
@@ -40,7 +40,7 @@ def guide_kinds(folder: Path) -> list[Kind]:
         failures=failures,
     )
     scene, guides = folder / "scene.json", folder / "guides.npz"
-    (shard,) = plan_shards([guides], scene, Oracle("sampling", robot="talos"), folder / "labels")
+    (shard,) = make_shards([guides], scene, Oracle("sampling", robot="talos"), folder / "labels")
     verdict = Verdict(
         *(0, True, True, 29, 30, 1.0, 4, 0.2, 0, 10.0, 12.0, None, None, "", 0.1),
     )

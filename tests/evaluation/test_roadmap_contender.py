@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from jaxleas.evaluation.exact import walker
+from jaxleas.evaluation.contender import contender
 from jaxleas.evaluation.judge import path_lengths
-from jaxleas.evaluation.roadmap_walker import roadmap_walker, stack
+from jaxleas.evaluation.roadmap_contender import roadmap_contender, stack
 from jaxleas.evaluation.starts import draw_starts, make_grounds
 from jaxleas.evaluation.suites import make_suite
 from jaxleas.guide import rb_kino
@@ -42,8 +42,8 @@ def test_a_roadmap_leads_around_the_hole_where_the_straight_way_does_not(env):
     grounds = make_grounds(suite.cells)
     starts = draw_starts(env, grounds, cell, suite.stream())
     method = rb_kino(env.config.limits, env.config.desired_speed)
-    alone = walker(env, method)(grounds, starts, suite.steps)
-    led = roadmap_walker(env, method, KINO.edges)(grounds, starts, 3000)
+    alone = contender(env, method)(grounds, starts, suite.steps)
+    led = roadmap_contender(env, method, KINO.edges)(grounds, starts, 3000)
     assert led.reached.sum() > alone.reached.sum()
     length, straight = path_lengths(led)
     around = led.reached & ~alone.reached

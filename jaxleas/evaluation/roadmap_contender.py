@@ -1,4 +1,4 @@
-"""A steering method with a roadmap as a walker: RB-Kino + RRT (T 3.4.2, table 4.3)."""
+"""A steering method with a roadmap as a contender: RB-Kino + RRT (T 3.4.2, table 4.3)."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from jaxleas.envs.steering import SteeringEnv
-from jaxleas.evaluation.exact import Walker
+from jaxleas.evaluation.contender import Contender
 from jaxleas.evaluation.judge import CellRollOut
 from jaxleas.evaluation.starts import Grounds, Starts
 from jaxleas.guide import (
@@ -26,8 +26,8 @@ CONNECTIONS = 200
 HOURS = 36_000.0
 
 
-def roadmap_walker(env: SteeringEnv, method: SteeringMethod, edges: Edges) -> Walker:
-    """Return a walker that uses a steering method and finds waypoints by RRT where needed.
+def roadmap_contender(env: SteeringEnv, method: SteeringMethod, edges: Edges) -> Contender:
+    """Return a contender that uses a steering method and finds waypoints by RRT where needed.
 
     Args:
         env: environment that decides what is valid.

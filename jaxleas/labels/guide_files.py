@@ -13,7 +13,7 @@ from jaxleas.types import Ending, InputError, Verdict
 
 
 @dataclass(frozen=True)
-class Walks:
+class GuideFiles:
     """What guide path files say of their paths, apart from any planner.
 
     Attributes:
@@ -43,7 +43,9 @@ class Walks:
         ]
 
 
-def read_walks(guides: Sequence[Path], scene: Callable[[], Scene], robot: str | None) -> Walks:
+def read_guide_files(
+    guides: Sequence[Path], scene: Callable[[], Scene], robot: str | None
+) -> GuideFiles:
     """Read whose paths the files hold, and how these ended.
 
     Args:
@@ -54,15 +56,15 @@ def read_walks(guides: Sequence[Path], scene: Callable[[], Scene], robot: str | 
     Raises:
         InputError: a file cannot be used, or its paths are another robot's than the others'.
     """
-    walkers, endings = [], {}
+    robots, endings = [], {}
     for path in guides:
         file = read_guide_paths(path)
-        walkers.append(planned_robot(file.robot, robot, file.paths, scene, path))
+        robots.append(planned_robot(file.robot, robot, file.paths, scene, path))
         endings[digest_of(path)] = file.endings
-        if walkers[-1].name != walkers[0].name:
+        if robots[-1].name != robots[0].name:
             raise InputError(
-                f"{guides[0]} is of {walkers[0].name}, and {path} of {walkers[-1].name}: label the"
+                f"{guides[0]} is of {robots[0].name}, and {path} of {robots[-1].name}: label the"
                 " paths of each robot into a folder of their own"
             )
-    notes = tuple(dict.fromkeys(each.note for each in walkers if each.note))
-    return Walks(walkers[0].name, notes, endings)
+    notes = tuple(dict.fromkeys(each.note for each in robots if each.note))
+    return GuideFiles(robots[0].name, notes, endings)

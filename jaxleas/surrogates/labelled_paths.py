@@ -1,4 +1,4 @@
-"""Labelled walks: guide paths with an exact planner's verdicts, as arrays for a surrogate's fit."""
+"""Labelled paths: guide paths with an exact planner's verdicts, as arrays for a surrogate's fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,8 +10,8 @@ from jaxleas.types import GuidePath, InputError
 
 
 @dataclass(frozen=True)
-class LabelledWalks:
-    """N walks at the configurations that the planner was asked about, at most K of each.
+class LabelledPaths:
+    """N paths at the configurations that the planner was asked about, at most K of each.
 
     The planner gets from kept configuration to kept configuration until it fails at `failed_at`;
     nothing is known about the configurations after that.
@@ -20,7 +20,7 @@ class LabelledWalks:
         position: position of the root in the world [m].
         yaw: heading [rad].
         velocity: velocity of the root in the world [m/s].
-        map_index: terrain of each walk.
+        map_index: terrain of each path.
         kept: number of kept configurations.
         known: number of kept configurations with a known verdict.
         failed_at: kept configuration that the planner did not reach; -1 if it reached all.
@@ -35,7 +35,7 @@ class LabelledWalks:
     failed_at: Int[np.ndarray, " N"]
 
     def __len__(self) -> int:
-        """Return the number of walks."""
+        """Return the number of paths."""
         return len(self.known)
 
     @property
@@ -48,36 +48,36 @@ class LabelledWalks:
         """Whether the planner failed on the way to a kept configuration."""
         return np.arange(self.yaw.shape[1])[None] == self.failed_at[:, None]
 
-    def __getitem__(self, rows: np.ndarray) -> "LabelledWalks":
-        """Return some of the walks."""
-        return LabelledWalks(**{name: getattr(self, name)[rows] for name in _FIELDS})
+    def __getitem__(self, rows: np.ndarray) -> "LabelledPaths":
+        """Return some of the paths."""
+        return LabelledPaths(**{name: getattr(self, name)[rows] for name in _FIELDS})
 
-    def trimmed(self) -> "LabelledWalks":
-        """Return the same walks without the columns that no walk reaches."""
+    def trimmed(self) -> "LabelledPaths":
+        """Return the same paths without the columns that no path reaches."""
         most = int(self.kept.max())
         cut = {name: getattr(self, name)[:, :most] for name in ("position", "yaw", "velocity")}
         return replace(self, **cut)
 
 
-_FIELDS = tuple(LabelledWalks.__dataclass_fields__)
+_FIELDS = tuple(LabelledPaths.__dataclass_fields__)
 
 
-def label_walks(
+def label_paths(
     paths: Sequence[GuidePath],
     last_index: Sequence[int],
     map_index: Sequence[int],
     keep_every: int,
     most_kept: int,
-) -> LabelledWalks:
+) -> LabelledPaths:
     """Turn guide paths and verdicts into arrays.
 
     Args:
-        paths: guide paths to turn into walks.
+        paths: guide paths to turn into paths.
         last_index: index of the last configuration that the planner reached on each guide path; -1
             for none.
         map_index: terrain of each guide path.
         keep_every: distance, in configurations, between two that the planner was asked about.
-        most_kept: maximum number K of kept configurations; longer walks are cut.
+        most_kept: maximum number K of kept configurations; longer paths are cut.
 
     Raises:
         InputError: there is no path, or the numbers do not belong together.
@@ -106,7 +106,7 @@ def label_walks(
         rows = zip(paths, kept_rows, strict=True)
         return np.stack([getattr(path, name)[kept] for path, kept in rows]).astype(np.float32)
 
-    return LabelledWalks(
+    return LabelledPaths(
         position=gather("position"),
         yaw=gather("yaw"),
         velocity=gather("velocity"),
@@ -117,8 +117,8 @@ def label_walks(
     )
 
 
-def join(parts: Sequence[LabelledWalks]) -> LabelledWalks:
-    """Return several sets of walks as one; their terrains must be numbered in one atlas."""
-    return LabelledWalks(
+def join(parts: Sequence[LabelledPaths]) -> LabelledPaths:
+    """Return several sets of paths as one; their terrains must be numbered in one atlas."""
+    return LabelledPaths(
         **{name: np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS}
     )
