@@ -70,6 +70,15 @@ def stop_file(run: Path) -> Path:
     return run.with_name(f"{run.name}.{STOP}")
 
 
+def log_of(job: Path) -> Path:
+    """Return the file with the output of a job's worker.
+
+    Args:
+        job: file of the job.
+    """
+    return job.with_suffix(".log")
+
+
 def read_outcome(run: Path) -> Outcome | None:
     """Return a training's outcome; None while there is no file.
 

@@ -3,6 +3,7 @@ from .devices import Devices as Devices
 from .devices import choose_devices as choose_devices
 from .devices import one_device as one_device
 from .examination import make_examination as make_examination
+from .first_states import initial_state as initial_state
 from .loop import POLICY_FILE as POLICY_FILE
 from .loop import assist as assist
 from .loop import train as train
@@ -13,6 +14,7 @@ from .networks.actor_critic import make_networks as make_networks
 from .normaliser import MAX_NORMALISED as MAX_NORMALISED
 from .normaliser import initial_normaliser as initial_normaliser
 from .normaliser import normalise as normalise
+from .optimiser import make_optimiser as make_optimiser
 from .policy import Policy as Policy
 from .policy import policy_of as policy_of
 from .policy import read_policy as read_policy
@@ -48,8 +50,6 @@ from .stretches import numbers as numbers
 from .stretches import stretches as stretches
 from .train_state import Learned as Learned
 from .train_state import TrainState as TrainState
-from .train_state import initial_state as initial_state
-from .train_state import make_optimiser as make_optimiser
 from .trainer import Trainer as Trainer
 from .walkers.host import generator_of as generator_of
 from .worlds import held_out_world as held_out_world

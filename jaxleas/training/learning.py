@@ -17,8 +17,9 @@ from jaxleas.training.loss import LARGEST, SMALLEST, Experience, Minibatch, ppo_
 from jaxleas.training.minibatches import Draws, draw_minibatches, mirror_images, take_robots
 from jaxleas.training.networks import ActorCritic
 from jaxleas.training.normaliser import Normaliser, normalise
+from jaxleas.training.optimiser import learning_rate
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import TrainState, learning_rate
+from jaxleas.training.train_state import TrainState
 from jaxleas.xla import descend
 
 

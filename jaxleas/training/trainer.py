@@ -12,10 +12,11 @@ from jaxleas.envs import Task
 from jaxleas.training.config import RunConfig
 from jaxleas.training.devices import Devices, one_device
 from jaxleas.training.examination import HostExaminer, make_examination
+from jaxleas.training.first_states import initial_host_state, initial_state
 from jaxleas.training.networks import ActorCritic, make_networks
 from jaxleas.training.policy import Policy, policy_of
 from jaxleas.training.ppo import HostTrainStep, make_train_step
-from jaxleas.training.train_state import TrainState, initial_host_state, initial_state
+from jaxleas.training.train_state import TrainState
 from jaxleas.training.worlds import held_out_world, training_world
 from jaxleas.types import InputError
 

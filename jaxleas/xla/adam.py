@@ -1,6 +1,6 @@
 """Adam over one vector, in which each number per step is computed only once.
 
-State and result are those of the optimiser that `train_state.make_optimiser` returns. It is written
+State and result are those of the optimiser that `optimiser.make_optimiser` returns. It is written
 out because XLA:CPU recomputes a number in a formula over the weights for each of them.
 """
 

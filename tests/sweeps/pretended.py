@@ -12,8 +12,8 @@ from jaxleas.sweeps import conductor
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.conductor import Conductor
 from jaxleas.sweeps.folder import open_folder
+from jaxleas.sweeps.processes import Processes
 from jaxleas.sweeps.results import TrialResult
-from jaxleas.sweeps.runners import Processes
 from jaxleas.sweeps.study import Study
 
 PRETENDER = (sys.executable, "-S", "-E", str(Path(__file__).with_name("pretender.py")))

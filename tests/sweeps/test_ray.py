@@ -10,7 +10,7 @@ import pytest
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.conductor import Conductor
 from jaxleas.sweeps.folder import open_folder
-from jaxleas.sweeps.runners import RayJobs
+from jaxleas.sweeps.ray_jobs import RayJobs
 from jaxleas.sweeps.study import Study
 from tests.sweeps import pretender
 from tests.sweeps.files import write_sweep

@@ -7,12 +7,12 @@ import pytest
 
 from jaxleas.envs.heads.normal import NormalDistribution
 from jaxleas.envs.steering import Steering, SteeringConfig
+from jaxleas.training.first_states import initial_state
 from jaxleas.training.loss import Experience
 from jaxleas.training.minibatches import mirror_images, take_robots
 from jaxleas.training.networks import make_networks
 from jaxleas.training.normaliser import normalise
 from jaxleas.training.ppo import make_train_step
-from jaxleas.training.train_state import initial_state
 
 from ..envs.worlds import flat, height_map, world_of
 from .runs import SteeringRun

@@ -8,8 +8,8 @@ import pytest
 from jax.flatten_util import ravel_pytree
 
 from jaxleas.training.config import PpoConfig
+from jaxleas.training.optimiser import learning_rate, make_optimiser
 from jaxleas.training.ppo_params import PpoParams
-from jaxleas.training.train_state import learning_rate, make_optimiser
 from jaxleas.xla.adam import descend
 
 from ..training.runs import SteeringRun
