@@ -24,7 +24,7 @@ def open_folder(
 
     Args:
         folder: folder of the distillation.
-        config: its configuration.
+        config: configuration of the distillation.
         start: run folder of the policy to begin with, if one is given.
         allow: user's own code that may be run, as MODULE:CLASS: planner and conditions.
 

@@ -43,8 +43,8 @@ def render(data: RunData, config: DistillationConfig, planner: str) -> str:
 
     Args:
         data: content of the distillation's folder.
-        config: its configuration.
-        planner: title of its planner.
+        config: configuration of the distillation.
+        planner: title of the exact planner.
     """
     figures = draw_figures(data.figures) if data.figures is not None else []
     best = data.best

@@ -78,8 +78,8 @@ def judge_exact(
                     if planner is None:
                         result = summarise(cell, method, walked, time_step)
                     else:
-                        told = _counter(bookkeeping.on_guides, cell, method, planner)
-                        judged = ask(cell, walked, planners[planner], time_step, told)
+                        count = _counter(bookkeeping.on_guides, cell, method, planner)
+                        judged = ask(cell, walked, planners[planner], time_step, count)
                         result = summarise_plans(cell, method, planner, judged, time_step)
                     bookkeeping.on_result(result)
                 results.append(result)

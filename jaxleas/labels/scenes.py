@@ -20,7 +20,7 @@ _ROUNDED = 2e-6  # coordinates in files are rounded to a micrometre [m]
 
 
 def states_itself(scene: Path, reading: Reading, search: PlaneSearch) -> bool:
-    """Return whether workers read the same polygons from a terrain file without being told more.
+    """Return whether workers read the same polygons from a terrain file by themselves.
 
     Args:
         scene: scene, mesh or map that guide paths cross.

@@ -67,7 +67,7 @@ def counted(
         failures: counts before it.
         began: group in which the episode of each step began.
         over: whether the episode ended in the step.
-        failed: whether it failed.
+        failed: whether the episode that ended failed.
         group: group in which each robot's episode began that is under way after the roll-out.
     """
 
@@ -103,7 +103,7 @@ def start_metrics(
         groups: names of the groups.
         failures: counts after the roll-out.
         group: group of the start that each robot would get after each step [time, robots].
-        over: whether it got it, because its episode ended.
+        over: whether the robot got that start, because its episode ended.
     """
     total = jnp.maximum(over.sum(), 1)
     metrics = {}

@@ -20,7 +20,7 @@ class Draws:
 
     Attributes:
         order: place of each robot in its group.
-        flip: whether it is mirrored.
+        flip: whether the robot is mirrored.
         noise: standard normal numbers for each head.
     """
 

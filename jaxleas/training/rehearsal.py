@@ -38,7 +38,7 @@ def rehearse(config: RunConfig, task: Task) -> None:
 
     Args:
         config: configuration of the run.
-        task: its task.
+        task: task of the run.
 
     Raises:
         OwnCodeError: a method raises an exception, or gives what cannot be used; one sentence says

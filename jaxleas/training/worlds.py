@@ -12,7 +12,7 @@ def training_world(config: RunConfig, task: Task) -> Any:
     """Return the world to train in.
 
     Raises:
-        InputError: its seeds would leave the training range.
+        InputError: the seeds of its arenas would leave the training range.
     """
     terrain = config.terrain
     last = terrain.first_seed + terrain.arenas - 1

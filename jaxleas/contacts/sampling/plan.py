@@ -20,7 +20,7 @@ class SamplingPlan:
         ending: why the plan ends; "reached" is success.
         reason: reason why the plan stopped, a sentence; empty on success.
         last_index: index in the guide path of the last configuration reached; -1 if none.
-        last_kept: its index among the kept configurations.
+        last_kept: index of that configuration among the kept configurations.
         kept: number of kept configurations.
         index: index of each posture's configuration in the guide path.
         how: way in which each posture came about.

@@ -25,9 +25,9 @@ class StandingLegs:
 
     Attributes:
         capsules: capsules of their legs, for each in turn.
-        clear: whether these legs touch none of each other.
+        clear: whether no two of these legs touch.
         moment: mass times position of all but the moving leg, in the world [kg m].
-        region: where the centre of mass can be.
+        region: region in which the centre of mass can be.
     """
 
     capsules: tuple[LegCapsules, ...]

@@ -57,7 +57,7 @@ def sides_of_hull(points: Float[np.ndarray, "N K 3"], carries: Bool[np.ndarray, 
 
     Args:
         points: points of contact [m].
-        carries: which of them belong to the hull.
+        carries: whether each point belongs to the hull.
     """
     flat = points[..., :2]
     apart = flat[:, None] - flat[:, :, None]  # from i to j, [N, i, j, 2]

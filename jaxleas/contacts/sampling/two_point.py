@@ -110,8 +110,8 @@ def com_exists(
         legs: legs of the robot.
         region: region of the feet that stand.
         limb: index of the foot that moves.
-        sole: middle of its sole in the world [m].
-        rotation: its rotation in the world.
+        sole: middle of the sole of that foot, in the world [m].
+        rotation: rotation of that foot in the world.
     """
     if not len(limb):
         return np.zeros(0, dtype=bool)
