@@ -8,18 +8,16 @@ from typing import Any
 from jaxleas.configuration import (
     load_config,
     present_name,
-    require_field,
     with_values,
 )
 from jaxleas.contacts import settings_from
 from jaxleas.envs import TASKS
 from jaxleas.evaluation import SUITED_TASKS, make_suite
+from jaxleas.sweeps.base import load_base
 from jaxleas.sweeps.config import Exact, SweepConfig, TimeToSuccess
 from jaxleas.sweeps.space import check_conditions, check_dimension
 from jaxleas.training import (
     RunConfig,
-    load_run_config,
-    pinned,
     require_signature,
     swept_fields,
 )
@@ -76,10 +74,7 @@ def open_sweep(path: str | Path, allow: Collection[str] = ()) -> Sweep:
     """
     path = Path(path)
     config = load_config(SweepConfig, path)
-    base = pinned(load_run_config(path.parent / config.config, allow=allow))
-    for name in config.set:
-        require_field(type(base), name, f"{path}: set")
-    base = with_values(base, config.set, f"{path}: set")
+    base = load_base(path, config.config, config.set, allow)
     return check_sweep(config, base, str(path), allow)
 
 

@@ -10,10 +10,11 @@ from pydantic import Field, model_validator
 
 from jaxleas.configuration import Strict, load_config, present_name, require_field, with_values
 from jaxleas.envs import TASKS
+from jaxleas.sweeps.base import load_base
 from jaxleas.sweeps.config import Dimension, Seed
 from jaxleas.sweeps.evolution import EvolutionConfig, Values, draw_values
 from jaxleas.sweeps.space import check_dimension
-from jaxleas.training import RunConfig, load_run_config, pinned, swept_fields
+from jaxleas.training import RunConfig, swept_fields
 from jaxleas.types import InputError
 
 
@@ -83,11 +84,8 @@ def open_population(path: str | Path, allow: Collection[str] = ()) -> Members:
     """
     path = Path(path)
     config = load_config(PopulationConfig, path)
-    base = pinned(load_run_config(path.parent / config.config, allow=allow))
+    base = load_base(path, config.config, config.set, allow)
     _require_vectorised(base, path, allow)
-    for name in config.set:
-        require_field(type(base), name, f"{path}: set")
-    base = with_values(base, config.set, f"{path}: set")
     for name, dimension in config.vary.items():
         where = f"{path}: vary"
         require_field(type(base), name, where)
