@@ -102,7 +102,7 @@ def make_conditions(
         raise InputError(f"{KEY}: an episode can follow one condition with memory: leave one out")
     if not conditions:
         raise InputError(f"{KEY}: no condition judges a configuration by itself: add collision")
-    return Judges(
+    return EndingConditions(
         condition=all_of(*conditions, order=candidates),
         foresight=foresights[0] if foresights else None,
         named=by_name,

@@ -115,7 +115,7 @@ def test_a_method_of_ones_own_stands_side_by_side(run, flat_suite, tmp_path, ask
 
 def test_methods_are_chosen_by_name(run, tmp_path):
     candidate = load_candidate(run)
-    assert list(make_contenders(candidate).walkers) == [
+    assert list(make_contenders(candidate).methods) == [
         "rb_lin",
         "rb_kino",
         "rb_kino_rrt",
@@ -125,7 +125,7 @@ def test_methods_are_chosen_by_name(run, tmp_path):
         make_contenders(candidate, wanted=["rb_kin"])
     with pytest.raises(InputError, match="there already"):
         make_contenders(candidate, {"leas_p1": run})
-    assert list(make_contenders(candidate, wanted=["leas", "lin"]).walkers) == ["rb_lin", "leas_p1"]
+    assert list(make_contenders(candidate, wanted=["leas", "lin"]).methods) == ["rb_lin", "leas_p1"]
     assert parse_policies(["a=x/y", "b=z=1"])["b"].name == "z=1"
     for wrong in ("leas_p2", "=path", "leas p2=path", "a="):
         with pytest.raises(InputError, match="name=path"):
@@ -175,8 +175,8 @@ def test_pictures_show_every_method(run, tmp_path, flat_suite, monkeypatch):
     from jaxleas.reports.scene_pictures import draw_side_by_side
 
     candidate = load_candidate(run)
-    walkers = make_contenders(candidate, wanted=["rb_lin"]).walkers
-    files = draw_side_by_side(candidate.env, walkers, flat_suite, (), tmp_path / "pictures")
+    methods = make_contenders(candidate, wanted=["rb_lin"]).methods
+    files = draw_side_by_side(candidate.env, methods, flat_suite, (), tmp_path / "pictures")
     assert [file.name for file in files] == ["flat_0deg_0cms.png", "flat_180deg_0cms.png"]
     assert all(file.read_bytes().startswith(b"\x89PNG") for file in files)
 
