@@ -1,16 +1,19 @@
 """The commands `jaxleas evaluate` and `jaxleas report`."""
 
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from jaxleas.configuration import Allow
-from jaxleas.contacts import PLANNERS, PlannerName, PlannerSettings, find_planner, settings_from
+from jaxleas.contacts import PlannerName
 from jaxleas.evaluation import (
+    Candidate,
+    Contenders,
     Evaluation,
     Planning,
     Reporter,
+    Suite,
     compare,
     examine,
     keep_evaluation,
@@ -28,6 +31,7 @@ from jaxleas.evaluation import (
 )
 from jaxleas.guide import ResultName
 from jaxleas.labels import settings_of, with_parameters
+from jaxleas.reports.planner_options import planner_names, planner_settings, words
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
@@ -94,15 +98,15 @@ def evaluate(
     """
     chosen = make_suite(suite, starts, seed, held_out)  # report mistakes before loading
     side_by_side = any((suite == "thesis", planners, methods, policies, pictures))
-    names = _planners(suite, planners)
+    names = planner_names(suite, planners)
     given = {
         "time_limit": time_limit,
         "max_combinations": max_combinations,
         "weights": slack_weights,
     }
     named = settings_of(parameters or ())
-    settings = _settings(names, with_parameters(given, named), named)
-    further = parse_policies(_words(policies) or ())
+    settings = planner_settings(names, with_parameters(given, named), named)
+    further = parse_policies(words(policies) or ())
     if json is not None and json.exists():
         _require_evaluation(json)
     if pictures is not None and pictures.exists() and not pictures.is_dir():
@@ -116,40 +120,52 @@ def evaluate(
     chosen = suited(chosen, candidate.env.robot)
     folder = Path(run) if Path(run).is_dir() and candidate.terms.are_standard else None
     if not side_by_side:
-        with Reporter() as reporter:
-            evaluation = examine(candidate, chosen, baseline=baseline, progress=reporter.say)
-        print(plain_table(evaluation))
-        if folder is not None:
-            keep_evaluation(folder, candidate, evaluation)
-        if json is not None:
-            write_evaluation(json, evaluation)
-            print(f"written: {json}")
-        return evaluation
+        return _evaluate_alone(candidate, chosen, baseline, folder, json)
     robot = candidate.env.config.robot
     for note in dict.fromkeys(filter(None, (each.note_for(robot) for each in settings.values()))):
         print(note)
-    contenders = make_contenders(candidate, further, _words(methods))
-    file = json
-    if file is None and folder is not None:
-        file = side_by_side_file(folder, chosen)
-    with Reporter() as reporter:
-        evaluation = compare(
-            candidate,
-            contenders,
-            chosen,
-            Planning(names, settings, processes or os.cpu_count() or 1),
-            file=file,
-            say=reporter.say,
-        )
-    print(table_of(evaluation))
-    if file is not None:
-        print(f"written: {file}")
+    contenders = make_contenders(candidate, further, words(methods))
+    if json is None and folder is not None:
+        json = side_by_side_file(folder, chosen)
+    planning = Planning(names, settings, processes or os.cpu_count() or 1)
+    evaluation = _evaluate_side_by_side(candidate, contenders, chosen, planning, json)
     if pictures is not None:
         with Reporter() as reporter:
             drawn = draw_side_by_side(
                 candidate.env, contenders.methods, chosen, names[:1], pictures, reporter.say
             )
         print(f"drawn: {len(drawn)} pictures in {pictures}")
+    return evaluation
+
+
+def _evaluate_alone(
+    candidate: Candidate, suite: Suite, baseline: bool, folder: Path | None, json: Path | None
+) -> Evaluation:
+    """Judge a policy by the conditions; print the table, and keep it where that is wanted."""
+    with Reporter() as reporter:
+        evaluation = examine(candidate, suite, baseline=baseline, progress=reporter.say)
+    print(plain_table(evaluation))
+    if folder is not None:
+        keep_evaluation(folder, candidate, evaluation)
+    if json is not None:
+        write_evaluation(json, evaluation)
+        print(f"written: {json}")
+    return evaluation
+
+
+def _evaluate_side_by_side(
+    candidate: Candidate,
+    contenders: Contenders,
+    suite: Suite,
+    planning: Planning,
+    file: Path | None,
+) -> Evaluation:
+    """Judge methods by exact planners, cell by cell into a file; print the table."""
+    with Reporter() as reporter:
+        evaluation = compare(candidate, contenders, suite, planning, file=file, say=reporter.say)
+    print(table_of(evaluation))
+    if file is not None:
+        print(f"written: {file}")
     return evaluation
 
 
@@ -161,55 +177,6 @@ def _require_evaluation(file: Path) -> None:
         raise InputError(
             f"--json {file} is there and holds no evaluation ({error}); remove it, or give another"
         ) from error
-
-
-def _planners(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
-    names = _words(given)
-    if names is None:
-        return tuple(PLANNERS) if suite == "thesis" else ()
-    if names == ["none"]:
-        return ()
-    for name in names:
-        find_planner(name, [name])
-    return tuple(dict.fromkeys(names))
-
-
-def _settings(
-    planners: Sequence[str], given: dict[str, Any], named: Collection[str]
-) -> dict[str, PlannerSettings]:
-    """Return the settings of each planner: those given that it has.
-
-    Args:
-        planners: names of the planners.
-        given: all settings given, by name.
-        named: names of those given as --parameters, of which a planner must have each.
-
-    Raises:
-        InputError: no planner has one of the named settings, or a value is out of range.
-    """
-    found = {name: find_planner(name, [name]) for name in planners}
-    known = {name: each.settings.model_fields for name, each in found.items()}
-    for name in named:
-        if not any(name in fields for fields in known.values()):
-            judges = (
-                f"none of the planners {', '.join(planners)} has"
-                if planners
-                else "no planner judges and has"
-            )
-            raise InputError(f"--parameters {name}: {judges} such a setting")
-    return {
-        name: settings_from(
-            each, **{key: value for key, value in given.items() if key in known[name]}
-        )
-        for name, each in found.items()
-    }
-
-
-def _words(given: Sequence[str] | None) -> list[str] | None:
-    """Return what was given as words or separated by commas; None where nothing was."""
-    if given is None:
-        return None
-    return [word for text in given for word in text.split(",") if word]
 
 
 def report(run: Path, out: Path | None = None) -> Path:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from jaxleas.configuration import Allow
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
+from jaxleas.viewer.refusals import require_drive, require_moving
 
 if TYPE_CHECKING:
     from viser import ViserServer
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from jaxleas.viewer.show import Player
 
     NamedRobot = tuple[str, SteeringEnv, Policy | OnnxPolicy]
-
-FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
 def view(
@@ -76,8 +75,8 @@ def view(
 
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
-    _require_drive(policies, start, goal)
-    _require_moving(policies, goal, guide, plan, record)
+    require_drive(policies, start, goal)
+    require_moving(policies, goal, guide, plan, record)
     for each in policies or ():  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
@@ -125,40 +124,6 @@ def _until_interrupted(is_the_end: bool) -> Iterator[None]:
         if not is_the_end:
             raise
         print()  # end the line on which the terminal shows Ctrl-C
-
-
-def _require_drive(
-    policies: Sequence[Path] | None,
-    start: tuple[float, float, float] | None,
-    goal: tuple[float, float] | None,
-) -> None:
-    for option, numbers, wanted in (
-        ("--start", start, "x y [m], yaw [deg]"),
-        ("--goal", goal, "x y [m]"),
-    ):
-        if numbers is not None and not all(abs(each) < FARTHEST for each in numbers):
-            given = " ".join(f"{each:g}" for each in numbers)
-            raise InputError(f"{option} {given}: give finite numbers below 1000 km, {wanted}")
-        if numbers is not None and not policies:
-            raise InputError(f"{option} needs --policies: there is no robot to walk there")
-
-
-def _require_moving(
-    policies: Sequence[Path] | None,
-    goal: tuple[float, float] | None,
-    guide: Path | None,
-    plan: Path | None,
-    record: Path | None,
-) -> None:
-    """Refuse a recording in which nothing moves."""
-    if record is None:
-        return
-    if record.suffix != ".html":
-        raise InputError(f"--record {record}: recordings are written as .html")
-    if policies and goal is None:
-        raise InputError("--record with --policies needs --goal X Y: where the robots walk to")
-    if not (policies or guide or plan):
-        raise InputError("--record needs something that moves: --policies, --guide or --plan")
 
 
 def _clips(
