@@ -79,7 +79,7 @@ def make_walks(policy: Path) -> dict[str, Walks]:
 
 def _walk(
     env: SteeringEnv,
-    contender,
+    walker,
     scenes: list[Scene],
     areas: Sequence[Sequence[tuple[Area, Area]]],
     each: int,
