@@ -145,7 +145,7 @@ def test_plans_keep_their_problem(planner: str, model: str) -> None:
     asked = problem(stones(0.1, rise=0.1, model=model))
     plan = PROGRAMS[planner](asked)
     assert plan.status == "feasible"
-    assert plan.last_feasible_step == len(asked) - 1
+    assert plan.last_feasible_step == plan.last_feasible_phase == len(asked) - 1  # its former name
     assert certify(asked, plan).certified
     assert (plan.com is None) == (model == "feet")
 
