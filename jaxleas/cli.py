@@ -58,6 +58,11 @@ COMMANDS = {
         "distill",
         "train a policy that knows its planner",
     ),
+    "gait collect": (
+        "jaxleas.footsteps.collect_command",
+        "collect",
+        "walk a controller in physics, and collect its footsteps",
+    ),
     "gait fit": (
         "jaxleas.footsteps.commands",
         "fit",
