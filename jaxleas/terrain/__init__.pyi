@@ -13,6 +13,8 @@ from .height_map import write_height_map as write_height_map
 from .images import import_png as import_png
 from .importers import import_mesh as import_mesh
 from .importers import import_terrain as import_terrain
+from .limit import Bar as Bar
+from .limit import Limit as Limit
 from .links import Area as Area
 from .links import Link as Link
 from .links import Tile as Tile
@@ -55,8 +57,6 @@ from .scenarios.courses import rotation as rotation
 from .scenarios.detours import dead_end as dead_end
 from .scenarios.detours import hole as hole
 from .scenarios.detours import wall as wall
-from .scenarios.limit import Bar as Bar
-from .scenarios.limit import Limit as Limit
 from .scenarios.limits import LIMITS as LIMITS
 from .scenarios.limits import limit_scenario as limit_scenario
 from .scenarios.scenario import Scenario as Scenario

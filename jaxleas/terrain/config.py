@@ -101,6 +101,29 @@ class DetourConfig(Strict):
     """smallest width of the ground on either side of the hole [m]"""
 
 
+class LimitsConfig(Strict):
+    """Transition over a straight obstacle that a robot just can, or just cannot, cross."""
+
+    ledge: LegInterval = (0.25, 0.6)
+    """height of a ledge, up or down [m]"""
+    gap: LegInterval = (0.1, 0.5)
+    """width of a gap [m]"""
+    hurdle: LegInterval = (0.1, 0.7)
+    """height of a low barrier [m]"""
+    wall: LegInterval = (0.7, 2.0)
+    """height of a high barrier [m]; half of the barriers are high"""
+    thickness: LegInterval = (0.02, 0.3)
+    """thickness of a barrier [m]"""
+    post: LegInterval = (0.03, 0.12)
+    """side of a square post in a row of posts [m]"""
+    post_height: LegInterval = (0.9, 2.0)
+    """height of the posts [m]"""
+    room: WidthInterval = (0.2, 1.0)
+    """room between two posts [m]"""
+    angle: Annotated[float, Field(ge=0.0, le=45.0)] = 45.0
+    """largest angle of the obstacle to the crossing [deg]"""
+
+
 class GeneratorConfig(Strict):
     """An arena of tiles: initial ones (flat, obstacles) joined by transitions."""
 
@@ -118,6 +141,9 @@ class GeneratorConfig(Strict):
     """probability that a transition that cannot be continued is built anyway, and leads nowhere"""
     detour_probability: Fraction = 0.0
     """probability that a transition into an empty cell is a hole or a wall; the thesis has none"""
+    limit_probability: Fraction = 0.0
+    """probability that a transition into an empty cell is a ledge, a gap, a barrier or a row of
+    posts, some of which are too much for the robot; the thesis has none"""
     stairs_probability: Fraction = 0.55
     """probability that a transition into an empty cell is stairs"""
     bridge_probability: Fraction = 0.30
@@ -137,6 +163,7 @@ class GeneratorConfig(Strict):
     bridge: BridgeConfig = BridgeConfig()
     stairs: StairsConfig = StairsConfig()
     detour: DetourConfig = DetourConfig()
+    limits: LimitsConfig = LimitsConfig()
 
     @model_validator(mode="after")
     def _odds_leave_room(self) -> "GeneratorConfig":

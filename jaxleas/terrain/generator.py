@@ -1,6 +1,7 @@
 """The random arena: a tree of initial and transition tiles fills a grid (T 3.3.2)."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -8,12 +9,14 @@ from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.links import Cell, Link, Tile, find_dead_ends, find_links
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.tiles import (
+    LIMITS,
     TileFrame,
     TileKind,
     TilePolygons,
     bridge_tile,
     flat_tile,
     hole_tile,
+    limit_tile,
     obstacle_tile,
     rubble_tile,
     stairs_tile,
@@ -100,6 +103,10 @@ class _Builder:
         config, rng = self.config, self.rng
         if config.detour_probability > 0.0 and rng.random() < config.detour_probability:
             return (TileKind.HOLE if rng.random() < 0.5 else TileKind.WALL), height
+        if config.limit_probability > 0.0 and rng.random() < config.limit_probability:
+            kind = LIMITS[int(rng.integers(len(LIMITS)))]
+            rise = rng.choice([-1, 1]) * rng.uniform(*config.limits.ledge)
+            return kind, height + rise * (kind is TileKind.LEDGE)
         draw = rng.random()
         if draw < config.stairs_probability:
             return TileKind.STAIRS, height + rng.choice([-1, 1]) * rng.uniform(*config.stairs.climb)
@@ -140,6 +147,7 @@ class _Builder:
             TileKind.STAIRS: stairs_tile,
             TileKind.HOLE: hole_tile,
             TileKind.WALL: wall_tile,
+            **{each: partial(limit_tile, kind=each) for each in LIMITS},
         }[kind]
         polygons = make(self.frame(cell, direction), heights, self.config, self.rng)
         self.add(cell, polygons)

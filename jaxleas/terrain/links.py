@@ -6,10 +6,22 @@ from typing import Literal
 import numpy as np
 
 from jaxleas.terrain.config import GeneratorConfig
-from jaxleas.terrain.tiles import TileKind
+from jaxleas.terrain.tiles import LIMITS, TileKind
 
 LinkKind = Literal[
-    "flat", "obstacles", "rubble", "bridge", "stairs_up", "stairs_down", "detour", "cliff", "void"
+    "flat",
+    "obstacles",
+    "rubble",
+    "bridge",
+    "stairs_up",
+    "stairs_down",
+    "detour",
+    "ledge",
+    "gap",
+    "barrier",
+    "posts",
+    "cliff",
+    "void",
 ]
 Area = tuple[float, float, float, float]
 """Rectangle x_min, x_max, y_min, y_max [m]."""
@@ -51,8 +63,9 @@ class Link:
         kind: kind of the transition, or of the ground.
         difficulty: difficulty in the measure of the kind: flat 0; obstacles, the number of boxes
             on the way; rubble, the steepest rectangle over the steepest possible; bridge,
-            1 - width / tile size; stairs, the climb [m]; detour, the blocked width / tile size;
-            cliff, the height difference [m]; void 0.
+            1 - width / tile size; stairs and ledge, the climb [m]; detour, the blocked width / tile
+            size; gap, its width [m]; barrier, its height [m]; posts, minus the room between them
+            [m]; cliff, the height difference [m]; void 0.
         start_area: rectangle of the start tile, inset [m].
         goal_area: rectangle of the middle metre of the goal tile [m].
         start_height: height of the start tile [m].
@@ -125,6 +138,8 @@ def _is_crossable(path: list[Tile], step: Cell, config: GeneratorConfig) -> bool
         TileKind.RUBBLE: config.level_below,
         TileKind.HOLE: config.level_below,
         TileKind.WALL: config.level_below,
+        **dict.fromkeys(LIMITS, config.level_below),
+        TileKind.LEDGE: config.limits.ledge[1] + 1e-9,
         TileKind.BRIDGE: config.bridge_below,
         # the largest climb that the generator may draw still is a link
         TileKind.STAIRS: max(config.stairs_below, config.stairs.climb[1]) + 1e-9,
@@ -167,6 +182,10 @@ def _kind_and_difficulty(path: list[Tile]) -> tuple[LinkKind, float]:
         TileKind.BRIDGE: "bridge",
         TileKind.HOLE: "detour",
         TileKind.WALL: "detour",
+        TileKind.LEDGE: "ledge",
+        TileKind.GAP: "gap",
+        TileKind.BARRIER: "barrier",
+        TileKind.POSTS: "posts",
     }
     return kinds[path[1].kind], difficulty
 

@@ -11,11 +11,9 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.geometry import Polytope, clip_polygon
-from jaxleas.terrain.polygons import box_faces
-from jaxleas.terrain.scenarios.limit import Bar, Limit
+from jaxleas.terrain.limit import Bar, Limit
 from jaxleas.terrain.scenarios.scenario import Scenario, around, compose, random_stream
-from jaxleas.terrain.tiles import TilePolygons
+from jaxleas.terrain.tiles import TilePolygons, bars_across, ground_across
 
 HALF_LENGTH, HALF_WIDTH = 3.0, 2.0
 """Half the course along x and y [m]; the obstacle goes through its middle."""
@@ -23,7 +21,6 @@ MOST_ANGLE = math.radians(45.0)
 """Largest angle between the way ahead and the normal of the obstacle [rad]."""
 BEYOND = 0.5
 """How far bars reach beyond the course to either side, so that there is no way round [m]."""
-_SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
 def ledge_up(seed: int) -> Scenario:
@@ -111,7 +108,7 @@ def limit_scenario(name: str, limit: Limit, angle: float, shift: float = 0.0) ->
     goal = 1.5 + limit.gap
     return Scenario(
         name,
-        compose([_ground(limit, angle), *_bars(limit, angle, shift)]),
+        compose([_ground(limit, angle), _bars(limit, angle, shift)]),
         ((-1.9, -1.2, -0.3, 0.3),),
         around(goal, 0.0, 0.3),
         limit=limit,
@@ -132,12 +129,10 @@ def _barrier(rng: np.random.Generator, heights: tuple[float, float]) -> Limit:
 
 def _ground(limit: Limit, angle: float) -> TilePolygons:
     """Return the ground before and behind the obstacle, and the side of a ledge."""
-    course = np.column_stack([_SQUARE * (HALF_LENGTH, HALF_WIDTH), np.zeros(4)])
-    normal = np.array([math.cos(angle), math.sin(angle), 0.0])
-    before = _beyond(course, -normal, 0.0)
-    behind = _raised(_beyond(course, normal, limit.gap), limit.rise)
+    before, behind = ground_across(limit, angle, (HALF_LENGTH, HALF_WIDTH))
     if not limit.rise:
         return TilePolygons([before, behind])
+    normal = np.array([math.cos(angle), math.sin(angle), 0.0])
     edge = before[np.abs(before @ normal) < 1e-9]
     side = np.vstack(
         [_raised(edge, min(0.0, limit.rise)), _raised(edge, max(0.0, limit.rise))[::-1]]
@@ -149,27 +144,6 @@ def _raised(points: Float[np.ndarray, "V 3"], height: float) -> Float[np.ndarray
     return points + np.array([0.0, 0.0, height])
 
 
-def _beyond(
-    polygon: Float[np.ndarray, "V 3"], normal: Float[np.ndarray, " 3"], distance: float
-) -> Float[np.ndarray, "W 3"]:
-    """Return the part of a polygon that lies at least `distance` [m] along `normal`."""
-    return clip_polygon(polygon, Polytope(-normal[None], np.array([-distance])))
-
-
-def _bars(limit: Limit, angle: float, shift: float) -> list[TilePolygons]:
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+def _bars(limit: Limit, angle: float, shift: float) -> TilePolygons:
     reach = HALF_WIDTH / math.cos(angle) + BEYOND
-    parts = []
-    for bar in limit.bars:
-        for middle, half in _stretches(bar, limit.period, shift, reach):
-            corners = _SQUARE * (0.5 * bar.thickness, half) + (0.0, middle)
-            parts.append(TilePolygons(boxes=[box_faces(corners @ turn.T, bar.bottom, bar.top)]))
-    return parts
-
-
-def _stretches(bar: Bar, period: float, shift: float, reach: float) -> list[tuple[float, float]]:
-    """Return the middle and half the length [m] of each copy of a bar along the obstacle."""
-    if math.isinf(bar.length):
-        return [(0.0, reach)]
-    first, last = math.ceil((-reach - shift) / period), math.floor((reach - shift) / period)
-    return [(shift + number * period, 0.5 * bar.length) for number in range(first, last + 1)]
+    return TilePolygons(boxes=bars_across(limit, angle, reach, shift))

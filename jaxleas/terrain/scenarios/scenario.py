@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jaxleas.terrain.config import GeneratorConfig
+from jaxleas.terrain.limit import Limit
 from jaxleas.terrain.links import Area
 from jaxleas.terrain.polygons import box_faces
-from jaxleas.terrain.scenarios.limit import Limit
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.tiles import TileFrame, TilePolygons
 

@@ -20,6 +20,10 @@ class TileKind(StrEnum):
     STAIRS = "stairs"
     HOLE = "hole"
     WALL = "wall"
+    LEDGE = "ledge"
+    GAP = "gap"
+    BARRIER = "barrier"
+    POSTS = "posts"
     VOID = "void"
 
     @property
