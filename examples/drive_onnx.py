@@ -28,20 +28,41 @@ def height_map(path):
     return height
 
 
+def feel(feelers, terrain, position, yaw):
+    """Return the margin [m] of reach and room with the root moved, for each of the moves."""
+    felt, keys = [], ("moves", "points", "reach", "free")
+    for (ahead, left, turn), points, reach, free in zip(
+        *(feelers[key] for key in keys), strict=True
+    ):
+        middle = position[:2] + (ahead, left) @ turned(yaw)
+        height = terrain(*(middle + np.array(points) @ turned(yaw + turn)).T) - position[2]
+        on_ground = max(min(height[i] - low, high - height[i]) for i, low, high in reach)
+        felt.append(min(on_ground, *(bottom - height[i] for i, bottom in free)))
+    return np.clip(felt, *feelers["clip"])
+
+
+def turned(yaw):
+    """Return the matrix that turns points in rows by an angle [rad]."""
+    return np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+
+
 def walk(session, terrain, start, goal, steps):
     """Return the root's positions [m] until it stands within 0.2 m of the goal."""
     metadata = session.get_modelmeta().custom_metadata_map
     layout, bounds = json.loads(metadata["observation"]), json.loads(metadata["command"])
     grid = np.stack(np.meshgrid(layout["rows"], layout["columns"], [0.0], indexing="ij"), -1)
+    profile = [[x, 0.0, 0.0] for x in layout.get("profile", [])]
+    points = np.array([*grid.reshape(-1, 3), *profile])
     position, velocity, yaw = np.array([*start, terrain(*start) + 0.95]), np.zeros(3), 0.0
     path = [position]
     while len(path) <= steps and np.linalg.norm(goal - position[:2]) > 0.2:
         cosine, sine = np.cos(yaw), np.sin(yaw)
         to_world = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
         ahead, left = to_world.T[:2, :2] @ (goal - position[:2])
-        x, y, _ = (grid.reshape(-1, 3) @ to_world.T + position).T
+        x, y, _ = (points @ to_world.T + position).T
         heights = np.clip(terrain(x, y) - position[2], *layout["height_clip"])
-        observation = [*(to_world.T @ velocity), np.arctan2(left, ahead), *heights]
+        felt = feel(layout["feelers"], terrain, position, yaw) if "feelers" in layout else []
+        observation = [*(to_world.T @ velocity), np.arctan2(left, ahead), *heights, *felt]
         (command,) = session.run(None, {"observation": np.array([observation], np.float32)})[0]
         position = position + velocity * bounds["time_step"]
         velocity = velocity + to_world @ command[:3] * bounds["time_step"]

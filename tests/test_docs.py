@@ -17,7 +17,7 @@ import pytest
 from jaxleas import cli
 from jaxleas.configuration.fields import fields_of
 from jaxleas.configuration.loading import to_yaml
-from jaxleas.envs.steering.layout import ICRA81, THESIS144
+from jaxleas.envs.steering.layout import FEELERS169, ICRA81, THESIS144
 from jaxleas.runs.folder import RunFolder
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain import write_height_map
@@ -256,7 +256,7 @@ def test_every_field_is_documented() -> None:
 
 def test_the_layouts_are_documented() -> None:
     text = (ROOT / "docs/observations_and_actions.md").read_text(encoding="utf-8")
-    for layout in (THESIS144, ICRA81):
+    for layout in (THESIS144, FEELERS169, ICRA81):
         rows = ", ".join(f"{x:g}" for x in layout.rows)
         shape = f"{len(layout.rows)} x {len(layout.columns)}"
         assert f"| `{layout.name}` | {layout.size} | {shape} | {rows} |" in text

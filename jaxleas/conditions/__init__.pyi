@@ -2,6 +2,7 @@ from .catalogue import TITLES as TITLES
 from .catalogue import make_conditions as make_conditions
 from .collision import Collision as Collision
 from .collision import collision as collision
+from .collision import trunk_bottoms as trunk_bottoms
 from .condition import MARGIN_LIMIT as MARGIN_LIMIT
 from .condition import VOID_IN_ROOT as VOID_IN_ROOT
 from .condition import AllOf as AllOf
@@ -17,9 +18,11 @@ from .exact import exact_reachability as exact_reachability
 from .exact import exact_strict_reachability as exact_strict_reachability
 from .exact import reconfirm as reconfirm
 from .exact_on_scene import EXACT_TWINS as EXACT_TWINS
+from .footprint import MOST_SPACING as MOST_SPACING
 from .footprint import UNDER_ROOT as UNDER_ROOT
 from .footprint import footprint_points as footprint_points
 from .footprint import is_under_root as is_under_root
+from .footprint import outline_points as outline_points
 from .foresight import Foresight as Foresight
 from .foresight import LookAround as LookAround
 from .foresight import Pick as Pick

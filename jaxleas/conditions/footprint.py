@@ -1,8 +1,11 @@
 """The grid of points in the root frame whose heights the analytic conditions read."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Bool, Float
 
+from jaxleas.conditions.points import union_of_points
 from jaxleas.robots import Robot
 
 MOST_SPACING = (0.112, 0.101)  # along x and y [m]: two or more points across any 0.3 m bridge
@@ -32,6 +35,53 @@ def footprint_points(robot: Robot) -> Float[np.ndarray, "P 2"]:
     return np.stack([x.ravel(), y.ravel()], axis=-1)
 
 
-def is_under_root(points: Float[np.ndarray, "P 2"]) -> Bool[np.ndarray, " P"]:
-    """Return which points lie directly under the root: H* of T eq. 3.6."""
-    return np.all(np.abs(points) <= UNDER_ROOT + _TOLERANCE, axis=-1)
+def outline_points(robot: Robot, spacing: float, spare: float = 0.0) -> Float[np.ndarray, "P 2"]:
+    """Return points along the outline of the trunk, and over the square under the root.
+
+    What is thicker than the spacing cannot pass between them: it enters the trunk through its
+    outline. A box's outline is left out where it lies in the shadow of a lower box, whose own
+    outline is met first.
+
+    Args:
+        robot: robot whose trunk and legs are judged.
+        spacing: largest distance of neighbouring points [m].
+        spare: width of the rim of the square that is left out [m].
+
+    Returns:
+        Points in the root frame [m], mirrored in y = 0 if the trunk is; each once.
+    """
+    low, high = spare - UNDER_ROOT, UNDER_ROOT - spare
+    found = [_lattice((low, low), (high, high), spacing)]
+    for box in robot.trunk:
+        lattice = _lattice(box.low[:2], box.high[:2], spacing)
+        at_end = (lattice == lattice.min(axis=0)) | (lattice == lattice.max(axis=0))
+        on_outline = np.any(at_end, axis=1)
+        shadowed = np.zeros(len(lattice), dtype=bool)
+        for other in robot.trunk:
+            if other.low[2] < box.low[2]:
+                above, below = lattice > np.array(other.low[:2]), lattice < np.array(other.high[:2])
+                shadowed |= np.all(above & below, axis=1)
+        found.append(lattice[on_outline & ~shadowed])
+    return union_of_points(found)
+
+
+def _lattice(
+    low: Sequence[float], high: Sequence[float], spacing: float
+) -> Float[np.ndarray, "P 2"]:
+    """Return points over a rectangle, its edges included, at most `spacing` apart along an axis."""
+    lines = [
+        np.linspace(first, last, int(np.ceil((last - first) / spacing - _TOLERANCE)) + 1)
+        for first, last in zip(low, high, strict=True)
+    ]
+    x, y = np.meshgrid(*lines, indexing="ij")
+    return np.stack([x.ravel(), y.ravel()], axis=-1)
+
+
+def is_under_root(points: Float[np.ndarray, "P 2"], spare: float = 0.0) -> Bool[np.ndarray, " P"]:
+    """Return which points lie directly under the root, H* of T eq. 3.6.
+
+    Args:
+        points: points in the root frame [m].
+        spare: width of the rim of the square that is left out [m].
+    """
+    return np.all(np.abs(points) <= UNDER_ROOT - spare + _TOLERANCE, axis=-1)

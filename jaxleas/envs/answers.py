@@ -106,9 +106,14 @@ def require_examination(answer: Any, groups: tuple[str, ...]) -> None:
         raise InputError(f"examination gives {kind_of(answer)}; give an Examination(starts, steps)")
     if not (answer.starts >= 1 and answer.steps >= 1):
         raise InputError(f"{answer} measures nothing: give 1 start and 1 step at least")
-    unknown = set(answer.cells) - set(groups)
-    if not isinstance(answer.cells, tuple) or unknown:
+    for name, cells in (("cells", answer.cells), ("stops", answer.stops)):
+        if not isinstance(cells, tuple) or set(cells) - set(groups):
+            raise InputError(
+                f"examination has the {name} {cells!r}; give a tuple of groups of the task:"
+                f" {', '.join(groups)}"
+            )
+    if answer.by_worst and not (answer.cells or answer.stops):
         raise InputError(
-            f"examination has the cells {answer.cells!r}; give a tuple of groups of the task:"
-            f" {', '.join(groups)}"
+            "examination is by_worst, but has neither cells nor stops to be the worst of: name some"
+            f" of the groups {', '.join(groups)}"
         )

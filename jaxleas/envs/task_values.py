@@ -53,11 +53,17 @@ class Examination:
             goal, fails, or runs out of time.
         steps: largest number of steps of each episode.
         cells: groups of starts whose success is reported separately, besides that of all.
+        stops: groups of starts in which staying valid is success, whether the goal is reached or
+            not; they do not count in the share that reached.
+        by_worst: whether the policy that is kept is the one that does best where it does worst, of
+            `cells` and `stops`, instead of the one that reaches most goals.
     """
 
     starts: int
     steps: int
     cells: tuple[str, ...] = ()
+    stops: tuple[str, ...] = ()
+    by_worst: bool = False
 
 
 def select(flag: Bool[Array, " robots"], chosen: Any, other: Any) -> Any:

@@ -50,7 +50,7 @@ def read_config(path: object, metadata: Mapping[str, str]) -> SteeringConfig:
         key = ".".join(map(str, ("steering_config", *first["loc"])))
         raise InputError(f"{path}: its metadata {key} is not usable: {first['msg']}") from error
     expected = json.loads(json.dumps(describe_observation(layout, config)))
-    for key in ("name", "size", "rows", "columns", "order", "units", "height_clip"):
+    for key in expected:
         if observation.get(key) != expected[key] or config.observation != name:
             raise InputError(
                 f"{path} expects another observation layout than this version's {name}: its"

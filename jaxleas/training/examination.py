@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import jax
@@ -19,6 +20,8 @@ from jaxleas.training.walkers.host import look
 # Seed of the examination's own draws: the same starts at every examination of every run.
 EXAMINATION_KEY = 20_210_530
 REACHED = "held_out/reached"
+VALID = "held_out/valid"
+WORST = "held_out/worst"
 Examine = Callable[[Any, Any, Any], dict[str, Any]]
 
 
@@ -126,14 +129,27 @@ def _fractions(
     examination: Examination, groups: tuple[str, ...], reached: Any, failed: Any, group: Any
 ) -> dict[str, Any]:
     """Return the fractions of all starts, and those of each cell that is reported separately."""
-    found = {
-        REACHED: reached.mean(),
-        "held_out/invalid": failed.mean(),
-        "held_out/stopped": (~reached & ~failed).mean(),
-    }
-    for cell in examination.cells:
-        inside = group == groups.index(cell)
-        # A cell without starts has no success: NaN is logged as null.
-        with np.errstate(invalid="ignore"):
-            found[f"{REACHED}/{cell}"] = (reached & inside).sum() / inside.sum()
-    return found
+    crossing = group >= 0
+    for stop in examination.stops:
+        crossing = crossing & (group != groups.index(stop))
+    # A cell without starts has no success: NaN is logged as null.
+    with np.errstate(invalid="ignore"):
+        found = {
+            REACHED: _share(reached, crossing) if examination.stops else reached.mean(),
+            "held_out/invalid": failed.mean(),
+            "held_out/stopped": (~reached & ~failed).mean(),
+        }
+        cells = {
+            f"{REACHED}/{cell}": _share(reached, group == groups.index(cell))
+            for cell in examination.cells
+        } | {
+            f"{VALID}/{cell}": _share(~failed, group == groups.index(cell))
+            for cell in examination.stops
+        }
+    if examination.by_worst:
+        found[WORST] = reduce(jnp.fmin, cells.values())  # of the cells that have starts
+    return found | cells
+
+
+def _share(good: Any, inside: Any) -> Any:
+    return (good & inside).sum() / inside.sum()

@@ -14,6 +14,7 @@ from jaxleas.runs import (
     Progress,
     RunFolder,
 )
+from jaxleas.training.examination import REACHED, WORST
 from jaxleas.training.policy import write_policy
 from jaxleas.training.stretches import (
     Stretch,
@@ -34,7 +35,8 @@ class Recorder:
         log: log of its metrics.
         progress: line that shows how far it is.
         background: thread that writes.
-        best: highest held-out success so far; -1 before the first examination.
+        best: highest held-out score so far, the share of goals reached or, if the task asks for it,
+            the success of the worst cell; -1 before the first examination.
         on_examined: function that is called after each examination.
     """
 
@@ -55,12 +57,12 @@ class Recorder:
             self.log.append(update * batch, numbers(metrics) | (fractions if last else {}))
         shown = {"return": f"{float(metrics['walk/reward']):.3f} per step"}
         if fractions:
-            shown["held out"] = f"{100 * fractions['held_out/reached']:.1f} %"
+            shown["held out"] = f"{100 * fractions[REACHED]:.1f} %"
         self.progress.update(stretch.done * batch, shown)
 
     def save(self, state: TrainState, done: int, fractions: dict[str, float]) -> None:
         """Write the state, and the policy if it is the best, while the training continues."""
-        score = fractions.get("held_out/reached")
+        score = fractions.get(WORST, fractions.get(REACHED))
         policy = None
         # Between equals the later wins: its learning rate was smaller and its average longer.
         if score is not None and score >= self.best:

@@ -53,9 +53,11 @@ def write_page(
         InputError: the terrain is too large or the start invalid, the page cannot make the policy's
             observation, or a file cannot be written.
     """
-    if layout_named(config.observation).counts_surfaces:
+    layout = layout_named(config.observation)
+    if layout.counts_surfaces or layout.feelers:
+        what = "count surfaces" if layout.counts_surfaces else "feel margins"
         raise InputError(
-            f"a page does not count surfaces, as the observation {config.observation} asks for:"
+            f"a page does not {what}, as the observation {config.observation} asks for:"
             " export a policy of another layout"
         )
     if terrain.heights.size > MOST_CELLS:

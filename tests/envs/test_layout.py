@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering.layout import ICRA81, THESIS144, layout_named
+from jaxleas.envs.steering.layout import FEELERS169, ICRA81, THESIS144, layout_named
 from jaxleas.types import InputError
 
-LAYOUTS = [ICRA81, THESIS144]
+LAYOUTS = [ICRA81, THESIS144, FEELERS169]
 
 
 def test_sizes_are_the_published_ones():
@@ -31,7 +31,7 @@ def test_no_stripe_at_the_root_is_unseen(layout):
 @pytest.mark.parametrize("layout", LAYOUTS, ids=lambda layout: layout.name)
 def test_mirroring_swaps_the_points_left_and_right(layout):
     points = layout.points_in_root
-    order = layout.mirror_permutation[4:] - 4
+    order = layout.mirror_permutation[4 : 4 + len(points)] - 4
     np.testing.assert_array_equal(points[order], points * [1, -1])
 
 

@@ -20,13 +20,18 @@ from jaxleas.terrain.atlas import make_atlas
 from tests.guide.walkers import flat_map, random_policy, standing, waypoints_at
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "drive_onnx.py"
-POLICY = random_policy(seed=4)
+POLICIES = {name: random_policy(seed=4, observation=name) for name in ("thesis144", "feelers169")}
+
+
+@pytest.fixture(params=POLICIES)
+def policy(request):
+    return POLICIES[request.param]
 
 
 @pytest.fixture
-def policy_file(tmp_path):
+def policy_file(policy, tmp_path):
     file = tmp_path / "policy.onnx"
-    file.write_bytes(build_onnx(POLICY, described(POLICY.config)))
+    file.write_bytes(build_onnx(policy, described(policy.config)))
     return file
 
 
@@ -51,7 +56,7 @@ def test_it_imports_neither_jax_nor_jaxleas():
     assert imported == {"argparse", "json", "numpy", "onnxruntime"}
 
 
-def test_it_walks_where_the_roll_out_walks(policy_file, tmp_path):
+def test_it_walks_where_the_roll_out_walks(policy, policy_file, tmp_path):
     spec = importlib.util.spec_from_file_location("drive_onnx", EXAMPLE)
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
@@ -65,10 +70,10 @@ def test_it_walks_where_the_roll_out_walks(policy_file, tmp_path):
     file = tmp_path / "map.npz"
     write_height_map(file, terrain)
 
-    env = SteeringEnv(POLICY.config)
+    env = SteeringEnv(policy.config)
     start = standing(env, [(-1.013, 0.517)])
     trips = Trips(make_atlas([terrain]), [0], start, waypoints_at(env, (2, 1)))
-    rollout = roll_out(env, leas(env, POLICY), trips, 60)
+    rollout = roll_out(env, leas(env, policy), trips, 60)
     session = onnxruntime.InferenceSession(policy_file, providers=["CPUExecutionProvider"])
     start, goal = np.array([-1.013, 0.517]), np.array([2.0, 1.0])
     path = example.walk(session, example.height_map(file), start, goal, 60)

@@ -18,11 +18,11 @@ from jaxleas.types import RootMotion
 def random_policy(seed: int = 0, activation: str = "relu", hidden=(16, 12), **task):
     """A policy of random weights, gentle enough to walk a while before it falls."""
     config = SteeringConfig(**task)
-    size = layout_named(config.observation).size
+    layout = layout_named(config.observation)
     rng = np.random.default_rng(seed)
-    sizes = [size, *hidden, 8]
+    sizes = [layout.size, *hidden, 8]
     mean, deviation = affine_scaling(
-        size, (config.height_low, config.height_high), config.limits.max_speed
+        layout, (config.height_low, config.height_high), config.limits.max_speed
     )
     kernels = [rng.normal(size=pair) / np.sqrt(pair[0]) for pair in pairwise(sizes)]
     kernels[-1][:, 2] *= 0.05  # up and down is where a random policy fails first
@@ -35,7 +35,7 @@ def random_policy(seed: int = 0, activation: str = "relu", hidden=(16, 12), **ta
         mean=jnp.asarray(mean),
         deviation=jnp.asarray(deviation),
         params=params_of([(jnp.asarray(each, jnp.float32), bias()) for each in kernels]),
-        network=Mlp(size, tuple(hidden), 8, activation),
+        network=Mlp(layout.size, tuple(hidden), 8, activation),
         signature=config.signature(),
         config=config,
     )

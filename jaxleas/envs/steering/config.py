@@ -69,6 +69,15 @@ class LinkShares(Strict):
     flat: NonNegative = 0.03
     detour: NonNegative = 0.0
     """Holes and walls to walk around (terrain.generator.detour_probability makes them)."""
+    ledge: NonNegative = 0.0
+    """Ledges up and down that the robot just can, or just cannot, cross
+    (terrain.generator.limit_probability makes these and the next three)."""
+    gap: NonNegative = 0.0
+    """Gaps."""
+    barrier: NonNegative = 0.0
+    """Hurdles and walls."""
+    posts: NonNegative = 0.0
+    """Rows of posts."""
     cliff: NonNegative = 0.0
     """A goal too high up or too far down: stop. With a share of 0.1 policies also stopped before
     stairs; random goals teach enough of stopping."""
@@ -83,6 +92,14 @@ class TerrainConfig(WorldsConfig):
     """Side of a height map's cell [m]."""
     shares: LinkShares = LinkShares()
     generator: GeneratorConfig = GeneratorConfig()
+    examined: Literal["crossings", "all"] = "crossings"
+    """Links at which the examination's starts begin: those that can be crossed, and the policy that
+    crosses most is kept; or dead ends and limits, too, where staying valid is success: kinds with a
+    share are then equally frequent, and the policy is kept whose worst kind is best."""
+    spare: Annotated[float, Field(ge=0.0, le=0.08)] = 0.0
+    """Room that a valid configuration leaves in training and its examination [m]: the trunk counts
+    as this much larger to each side, and the square under the root as this much smaller. A policy
+    so keeps valid where polygons are asked, not a map with cells of some centimetres."""
     files: tuple[TerrainEntry, ...] = ()
     """The user's own terrain files to train on besides the generator's arenas: paths, or
     `{file: PATH, up: y, scale: 0.001}` with what a file does not state itself. They are used for
@@ -121,9 +138,14 @@ class SteeringConfig(TaskConfig):
     robot: str = DEFAULT_ROBOT
     """Name of the robot. For another one than Talos, configurations have other defaults: heights
     seen from the root, and the sizes of the generator's terrain."""
-    observation: Literal["thesis144", "thesis145", "icra81"] = "thesis144"
-    """Layout of the local height map: 10 x 14 (T table 3.1), the same and the number of surfaces
-    around the robot (T 5.2.3), or 11 x 7 (I sec. III)."""
+    observation: Literal["thesis144", "thesis145", "icra81", "feelers169"] = "thesis144"
+    """Layout of the observation: heights of 10 x 14 points (T table 3.1), the same and the number
+    of surfaces around the robot (T 5.2.3), 11 x 7 (I sec. III), or 10 x 14 with a finer profile of
+    the ground ahead and the margin of the conditions with the root moved (`Feelers`)."""
+    outline_spacing: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    """Largest distance of further points that the conditions read along the outline of the trunk
+    and in the square under the root [m]: nothing that is thicker passes between them. 0: there are
+    no such points, and the conditions read points up to 0.11 m apart."""
     height_low: float = LOWEST
     """Lower bound z_min to which heights are clipped [m], relative to the root."""
     height_high: float = HIGHEST
@@ -168,9 +190,7 @@ class SteeringConfig(TaskConfig):
         """Return the signature: the layout's observation; acceleration and turn rate as action."""
         layout = layout_named(self.observation)
         height_range = (self.height_low, self.height_high)
-        mean, deviation = affine_scaling(
-            layout.size, height_range, self.limits.max_speed, layout.counts_surfaces
-        )
+        mean, deviation = affine_scaling(layout, height_range, self.limits.max_speed)
         observation = Part(
             "observation",
             (layout.size,),

@@ -13,17 +13,21 @@ from jaxleas.conditions import (
     Foresight,
     MarginFunction,
     Pick,
+    all_of,
     extended,
     footprint_points,
     make_conditions,
+    outline_points,
     read_from,
     with_points,
 )
 from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.feelers import Feelers
 from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
 from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, write_observation
 from jaxleas.envs.steering.reward import RewardParams, reward
+from jaxleas.envs.steering.spare import points_with_spare, with_larger_trunk
 from jaxleas.envs.steering.state import (
     GOALS,
     Route,
@@ -43,7 +47,8 @@ class SteeringEnv:
 
     The local terrain of a robot is the heights at `points_in_root`: first the observation's grid,
     then the footprint, a finer grid in the trunk's shadow that the conditions need and the policy
-    does not see, and finally any other points that the user's own condition reads.
+    does not see, any other points that the user's own condition reads, and finally those of the
+    feelers.
 
     Attributes:
         config: configuration of the task.
@@ -54,6 +59,7 @@ class SteeringEnv:
         conditions: conditions that together are `condition`, by name.
         foresight: condition with memory, such as a surrogate of a contact planner; an episode also
             ends where it fails. None: there is no such condition.
+        feelers: feelers of the layout; None: it has none.
     """
 
     action_size = ACTION_SIZE
@@ -64,6 +70,7 @@ class SteeringEnv:
         condition: Condition | MarginFunction | None = None,
         foresight: Foresight | None = None,
         allow: Collection[str] = (),
+        spare: float = 0.0,
     ):
         """Prepare the task.
 
@@ -74,6 +81,7 @@ class SteeringEnv:
             foresight: condition with a memory of the episode that also ends it, in place of the
                 one that the configuration names.
             allow: user's own code that may be run, as MODULE:CLASS; those of `config.conditions`.
+            spare: room that a valid configuration leaves (`TerrainConfig.spare`) [m].
 
         Raises:
             InputError: a condition that the configuration names cannot be made.
@@ -85,13 +93,18 @@ class SteeringEnv:
         # Points of the observation: places kept for the motion, then its grid.
         self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
         sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
+        if config.outline_spacing:
+            sampled = extended(sampled, outline_points(self.robot, config.outline_spacing))
         named: Mapping[str, Condition | MarginFunction] = (
             {} if condition is None else {"own": condition}
         )
+        given = condition
         if condition is None:
             made = make_conditions(config.conditions, self.robot, sampled, config, allow)
             condition, foresight = made.condition, foresight or made.foresight
             named = made.named
+            if spare:
+                condition = self._hardened(made.condition, sampled, spare, allow)
         self.foresight = foresight
         # Points that the conditions read: only a few of all.
         self._judge = with_points(condition, sampled)
@@ -102,6 +115,29 @@ class SteeringEnv:
             name: read_from(self.points_in_root, with_points(each, sampled))
             for name, each in named.items()
         }
+        self.feelers = None
+        if self.layout.feelers:
+
+            def make(points: np.ndarray) -> Condition:
+                if given is not None:
+                    return with_points(given, sampled)
+                # A foresight follows an episode: it has no margin at places not walked to.
+                return make_conditions(
+                    config.conditions, self.robot, points, config, allow
+                ).condition
+
+            self.feelers = Feelers(self.robot, self.layout.feelers, make)
+            # All of them, also those known already: they are read as one block.
+            self.points_in_root = np.concatenate([self.points_in_root, self.feelers.points_in_root])
+
+    def _hardened(
+        self, condition: Condition, sampled: np.ndarray, spare: float, allow: Collection[str]
+    ) -> Condition:
+        """Return a condition that holds where the named ones hold, also with less room."""
+        config, larger = self.config, with_larger_trunk(self.robot, spare)
+        points = points_with_spare(sampled, larger, config.outline_spacing, spare)
+        harder = make_conditions(config.conditions, larger, points, config, allow).condition
+        return all_of(condition, harder, order=sampled)
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
@@ -118,18 +154,39 @@ class SteeringEnv:
         """Return the observation of a robot that seeks `goal` on this local terrain."""
         seen = heights_in_root[..., : len(self.layout.points_in_root)]
         columns = jnp.pad(seen, [(0, 0)] * (seen.ndim - 1) + [(MOTION_SIZE, 0)])
-        return self._write(columns, *seen_motion(motion, goal))
+        observation = self._write(columns, *seen_motion(motion, goal))
+        if self.feelers is None:
+            return observation
+        first = len(self.points_in_root) - len(self.feelers.points_in_root)
+        felt = self.feelers(heights_in_root[..., first:], motion)
+        return jnp.concatenate([observation, felt], axis=-1)
 
     def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return the robots' observation: as `observe` on their local terrain, in one pass."""
         motion = state.motion
+        where = state.plan.map_index, motion.position, motion.yaw
+        observation = atlas.heights_around(
+            *where, self._seen, self._write, *seen_motion(motion, self.goal(state))
+        )
+        if self.feelers is None:
+            return observation
+        feelers = self.feelers
+        felt = atlas.heights_around(
+            *where, feelers.points_in_root, lambda heights: feelers(heights, motion)
+        )
+        return jnp.concatenate([observation, felt], axis=-1)
+
+    def margin(
+        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
+    ) -> Float[Array, "*batch"]:
+        """Return the margin of the conditions that need no memory [m]."""
+        # Computed in the pass over the heights: outside it, each use of the margin would repeat it.
         return atlas.heights_around(
-            state.plan.map_index,
+            map_index,
             motion.position,
             motion.yaw,
-            self._seen,
-            self._write,
-            *seen_motion(motion, self.goal(state)),
+            self._judged,
+            lambda heights: self._judge(heights, motion),
         )
 
     def _write(self, columns: Array, *seen: Array) -> Array:
@@ -174,10 +231,7 @@ class SteeringEnv:
     ) -> tuple[Float[Array, "*batch"], Any]:
         """Return the margin of all conditions that end an episode, and the foresight's memory."""
         where = state.plan.map_index, motion.position, motion.yaw
-        # Computed in the pass over the heights: outside it, each use of the margin would repeat it.
-        margin = atlas.heights_around(
-            *where, self._judged, lambda heights: self._judge(heights, motion)
-        )
+        margin = self.margin(atlas, state.plan.map_index, motion)
         if self.foresight is None:
             return margin, state.memory
 

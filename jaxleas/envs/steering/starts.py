@@ -54,10 +54,10 @@ def draw_starts(
     if world.own is not None:
         own = draw_own_starts(world.own, further[1], count, GOALS)
         route, motion = _put_on_files(env, world, own, route, motion, further[2])
-    heights = env.local_heights(world.atlas, route.map_index, motion)
-    valid = env.condition(heights, motion) >= 0.0
+    valid = env.margin(world.atlas, route.map_index, motion) >= 0.0
     memory: Any = ()
     if env.foresight is not None:
+        heights = env.local_heights(world.atlas, route.map_index, motion)
         chance = jax.random.uniform(further[0], (count,))
         foreseen, memory = env.foresight.begin(heights, motion, chance)
         valid &= foreseen >= 0.0
@@ -67,8 +67,7 @@ def draw_starts(
         wanders &= ~own.chosen  # their first goal is random anyway
     state = state.replace(goal_index=wanders.astype(jnp.int32))  # type: ignore[attr-defined]
     arrival = _arrival(env, world, motion, route)
-    arrival_heights = env.local_heights(world.atlas, route.map_index, arrival)
-    arrives = env.condition(arrival_heights, arrival) >= 0.0
+    arrives = env.margin(world.atlas, route.map_index, arrival) >= 0.0
     valid &= arrives | ~world.crossable[link]
     if world.own is not None and own is not None:
         over_ground = is_ground(world.atlas.height_at(own.map_index, own.start[:, None])[:, 0])

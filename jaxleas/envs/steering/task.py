@@ -20,6 +20,10 @@ from jaxleas.envs.steering.world import KINDS, OwnMaps, World, make_world
 from jaxleas.terrain import generate_arena, read_own_terrain
 
 NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
+STOPS = ("ledge", "gap", "barrier", "posts", "cliff", "void")
+"""Kinds of links some of which cannot be crossed: there, staying valid is success."""
+EASY = ("flat", "obstacles")
+"""Kinds of links that every policy crosses."""
 
 
 class Steering(Task):
@@ -52,7 +56,7 @@ class Steering(Task):
             allow: user's own code that may be run, as MODULE:CLASS.
         """
         super().__init__(config, worlds or TerrainConfig())
-        self.env = SteeringEnv(config, condition, foresight, allow)
+        self.env = SteeringEnv(config, condition, foresight, allow, self.worlds.spare)
 
     @classmethod
     def make(cls, config: Any, worlds: Any, allow: Collection[str] = ()) -> Self:
@@ -79,8 +83,9 @@ class Steering(Task):
 
         Terrain files are used for training, too, but never for the examination.
 
-        Arenas of the examination have no boxes, and crossings only: every goal can be reached, so
-        that the score has room to the top and the best policy can be distinguished from the second.
+        Arenas of the examination have no boxes, and crossings only unless the configuration asks
+        for more: every goal can be reached, so that the score has room to the top and the best
+        policy can be distinguished from the second.
 
         Raises:
             InputError: no arena has a link to cross.
@@ -90,7 +95,11 @@ class Steering(Task):
         if examined:
             clear = generator.obstacles.model_copy(update={"probability": 0.0})
             generator = generator.model_copy(update={"obstacles": clear})
-            shares |= dict.fromkeys(NOT_CROSSED, 0.0)
+            if terrain.examined == "all":
+                shares = {kind: float(share > 0.0) for kind, share in shares.items()}
+                shares |= dict.fromkeys(EASY, 0.0)
+            else:
+                shares |= dict.fromkeys((*NOT_CROSSED, *STOPS), 0.0)
         arenas = [generate_arena(generator, seed) for seed in seeds]
         files = None if examined else self._own_maps
         return make_world(arenas, terrain.resolution, shares, files)
@@ -130,5 +139,16 @@ class Steering(Task):
         return self.env.look(world.atlas, state)
 
     def examination(self, held_out: Any) -> Examination:
-        """Return the examination: links to cross, with the success over all of them."""
-        return Examination(held_out.starts, held_out.steps)
+        """Return the examination: links to cross, and those to stop at if the terrain says so."""
+        terrain = self.worlds
+        if terrain.examined == "crossings":
+            return Examination(held_out.starts, held_out.steps)
+        shares = terrain.shares.model_dump()
+        kinds = [kind for kind in KINDS if shares[kind] > 0.0 and kind not in EASY]
+        return Examination(
+            held_out.starts,
+            held_out.steps,
+            cells=tuple(kind for kind in kinds if kind not in STOPS),
+            stops=tuple(kind for kind in kinds if kind in STOPS),
+            by_worst=True,
+        )

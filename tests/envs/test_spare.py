@@ -1,0 +1,62 @@
+"""Room that is left in training: what is valid there is valid without it, and some room farther."""
+
+import jax.numpy as jnp
+import numpy as np
+
+from jaxleas.envs.steering import SteeringConfig, SteeringEnv
+from jaxleas.terrain import HeightMap, make_atlas
+from jaxleas.types import RootMotion
+
+CONFIG = SteeringConfig(outline_spacing=0.05)
+SPARE = 0.03
+PLAIN, STRICT = SteeringEnv(CONFIG), SteeringEnv(CONFIG, spare=SPARE)
+COUNT = 4000
+
+
+def valid(env, atlas, motion):
+    return np.asarray(env.margin(atlas, jnp.zeros(len(motion.yaw), jnp.int32), motion)) >= 0.0
+
+
+def test_room_is_left_to_walls_and_edges():
+    """A wall from x = 0 on, or ground that ends there; the root comes closer, facing it."""
+    cell = 0.01
+    x = np.arange(-150, 150) * cell + 0.5 * cell
+    wall = np.where(x > 0.0, 1.5, 0.0).astype(np.float32)
+    ledge = np.where(x > 0.0, np.nan, 0.0).astype(np.float32)
+    place = np.linspace(-0.4, 0.3, 701)
+    motion = RootMotion(
+        jnp.asarray(np.stack([place, 0.0 * place, 0.95 + 0.0 * place], axis=-1)),
+        jnp.zeros((len(place), 3)),
+        jnp.zeros(len(place)),
+    )
+    for row in (wall, ledge):
+        atlas = make_atlas([HeightMap(np.tile(row, (300, 1)), cell, (float(x[0]), -1.5))])
+        closest = [place[valid(env, atlas, motion)].max() for env in (PLAIN, STRICT)]
+        assert closest[0] - closest[1] == np.clip(
+            closest[0] - closest[1], SPARE - cell, SPARE + cell
+        )
+
+
+def test_what_is_valid_with_room_to_spare_is_valid():
+    rng = np.random.default_rng(0)
+    blocks = np.kron(rng.uniform(0.0, 0.2, (12, 12)), np.ones((10, 10)))
+    posts = np.kron(rng.uniform(size=(60, 60)) < 0.01, np.ones((2, 2))) > 0.0
+    blocks[posts] = 1.0  # 8 cm thick: none passes between points 5 cm apart
+    atlas = make_atlas([HeightMap(blocks.astype(np.float32), 0.04, (-2.4, -2.4))])
+    place = np.column_stack([rng.uniform(-2, 2, (COUNT, 2)), rng.uniform(0.85, 1.1, COUNT)])
+    motion = RootMotion(
+        jnp.asarray(place, jnp.float32),
+        jnp.zeros((COUNT, 3)),
+        jnp.asarray(rng.uniform(-np.pi, np.pi, COUNT), jnp.float32),
+    )
+    plain, strict = (valid(env, atlas, motion) for env in (PLAIN, STRICT))
+    assert 0.1 < strict.mean() < plain.mean()
+    assert not (strict & ~plain).any()
+
+
+def test_feelers_and_observation_do_not_change():
+    config = CONFIG.model_copy(update={"observation": "feelers169"})
+    plain, strict = SteeringEnv(config), SteeringEnv(config, spare=SPARE)
+    assert plain.feelers is not None
+    assert strict.feelers is not None
+    np.testing.assert_array_equal(plain.feelers.points_in_root, strict.feelers.points_in_root)
