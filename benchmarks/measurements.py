@@ -24,7 +24,7 @@ class Metric:
     """One line of the table.
 
     Attributes:
-        name: name, which begins with env_, ppo_, learn_ or export_.
+        name: name, which begins with env_, ppo_, learn_, export_ or walk_.
         unit: unit of the value.
         better: direction of better values.
         tolerance: relative difference from the baseline that is not significant.

@@ -8,6 +8,7 @@ from benchmarks.workloads.machine import MACHINE
 from benchmarks.workloads.memory import MEMORY
 from benchmarks.workloads.surrogate import SURROGATE
 from benchmarks.workloads.training import TRAINING
+from benchmarks.workloads.walking import WALKING
 from benchmarks.workloads.workload import Workload
 
 WORKLOADS: tuple[Workload, ...] = (
@@ -19,4 +20,5 @@ WORKLOADS: tuple[Workload, ...] = (
     MEMORY,
     *EXPORT,
     LEARNING,
+    WALKING,
 )

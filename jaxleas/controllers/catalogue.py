@@ -37,13 +37,18 @@ def find_controller(name: str, body: Body, allow: Collection[str] = ()) -> Contr
     """Return a controller of a robot.
 
     Args:
-        name: name of a controller, or MODULE:CLASS of the user's own.
+        name: name of a controller, path of a policy (.onnx) with its description (.json) beside
+            it, or MODULE:CLASS of the user's own.
         body: robot.
         allow: each MODULE:CLASS that a person has named on a command line or in a call.
 
     Raises:
         InputError: there is no such controller, or it is not of this robot.
     """
+    if name.endswith(".onnx"):
+        from jaxleas.controllers.onnx_controller import OnnxController
+
+        return OnnxController(name, body)
     return CONTROLLERS.find(name, allow)(body)
 
 

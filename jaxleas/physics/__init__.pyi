@@ -1,4 +1,5 @@
 from .bodies import DEFAULT_BODY as DEFAULT_BODY
+from .bodies import FREE_JOINT as FREE_JOINT
 from .bodies import Body as Body
 from .bodies import Leg as Leg
 from .bodies import body_names as body_names
@@ -9,6 +10,7 @@ from .simulation import Physics as Physics
 from .simulation import Stepped as Stepped
 from .simulation import make_physics as make_physics
 from .simulation import standing as standing
+from .state import ROOT_SPEEDS as ROOT_SPEEDS
 from .state import BodyState as BodyState
 from .state import Sensed as Sensed
 from .variation import Variation as Variation
