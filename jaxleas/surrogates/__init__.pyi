@@ -1,7 +1,7 @@
 from .fit import fit as fit
-from .fit import foreseen_failure as foreseen_failure
-from .fit import split_by_terrain as split_by_terrain
+from .splitting import split_by_terrain as split_by_terrain
 from .foresight import SurrogateForesight as SurrogateForesight
+from .hazards import foreseen_failure as foreseen_failure
 from .label_files import Labels as Labels
 from .label_files import read_labels as read_labels
 from .labelled_paths import LabelledPaths as LabelledPaths

@@ -5,7 +5,8 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.evaluation.figure_file import Figures, StepRow, read_figures, write_figures
-from jaxleas.evaluation.figures import COURSE, step_lengths
+from jaxleas.evaluation.figure_rows import step_lengths
+from jaxleas.evaluation.figures import COURSE
 from jaxleas.evaluation.figures_command import _opened
 from jaxleas.files import read_json, write_json
 from jaxleas.labels import Judge

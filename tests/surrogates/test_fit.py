@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxleas.surrogates import FitSettings, fit, foreseen_failure, label_paths
-from jaxleas.surrogates.fit import split_by_terrain
+from jaxleas.surrogates.splitting import split_by_terrain
 from jaxleas.types import InputError
 
 from .walkers import KEEP_EVERY, dizzy, env, flat_atlas, identity, wander
