@@ -1,5 +1,4 @@
 from .fit import fit as fit
-from .splitting import split_by_terrain as split_by_terrain
 from .foresight import SurrogateForesight as SurrogateForesight
 from .hazards import foreseen_failure as foreseen_failure
 from .label_files import Labels as Labels
@@ -9,6 +8,7 @@ from .labelled_paths import join as join
 from .labelled_paths import label_paths as label_paths
 from .network import initial_weights as initial_weights
 from .settings import FitSettings as FitSettings
+from .splitting import split_by_terrain as split_by_terrain
 from .surrogate import Identity as Identity
 from .surrogate import Surrogate as Surrogate
 from .surrogate_file import read_surrogate as read_surrogate

@@ -14,6 +14,7 @@ from jaxleas.sweeps.history import History
 from jaxleas.sweeps.member_files import SUCCESS, MemberFiles
 from jaxleas.sweeps.population import Population
 from jaxleas.sweeps.population_config import Members
+from jaxleas.sweeps.takeover import taken_over
 from jaxleas.training import (
     InterruptedRunError,
     Metrics,
@@ -177,7 +178,8 @@ class _Loop:
         stream = np.random.default_rng((self.members.seed, len(self.files), examination))
         round_ = evolve(evolution, self.members.space, scores, self.values, stream)
         parents = np.array([each.parent for each in round_])
-        self.states = self.population.place(self._taken_over(parents))
+        failed = np.array([bool(files.failure) for files in self.files])
+        self.states = self.population.place(taken_over(self.states, parents, failed))
         self.values = [each.values for each in round_]
         self._set_params()
         # A failed member continues as a copy of another.
@@ -185,20 +187,6 @@ class _Loop:
         for files, failure in zip(self.files, failures, strict=True):
             files.failure = failure
         self.history.append(self.done * self.config.ppo.batch, scores, round_)
-
-    def _taken_over(self, parents: np.ndarray) -> TrainState:
-        """Return the states after every member has copied what its parent learned."""
-        members = np.arange(len(parents))
-        failed = [bool(files.failure) for files in self.files]
-        # Robots continue where they are, unless their own policy failed.
-        of_robots = np.where(failed, parents, members)
-        source = dict.fromkeys(("params", "averaged", "optimiser", "normaliser"), parents)
-        source |= dict.fromkeys(("episode", "observation"), of_robots)
-        taken = {
-            name: jax.tree.map(lambda leaf, index=index: leaf[index], getattr(self.states, name))
-            for name, index in source.items()
-        }
-        return self.states.replace(**taken)  # type: ignore[attr-defined]
 
     def _save(self) -> None:
         note = {

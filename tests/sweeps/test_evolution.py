@@ -2,12 +2,16 @@
 
 import math
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from jaxleas.sweeps.config import Dimension
 from jaxleas.sweeps.evolution import EvolutionConfig, draw_values, evolve, perturbed
 from jaxleas.sweeps.history import History, read_history
+from jaxleas.sweeps.takeover import taken_over
+from jaxleas.training import TrainState
+from jaxleas.training.failures import Failures
 
 SPACE = {
     "ppo.learning_rate": Dimension(low=1e-4, high=1e-2, log=True),
@@ -89,3 +93,28 @@ def test_history_forgets_a_future_that_was_abandoned(tmp_path):
     assert read_history(path)[0].scores == [0.1, None]
     History(path, 20)
     assert [row.step for row in read_history(path)] == [10, 20]
+
+
+def test_robots_stay_with_their_groups_and_failures_unless_their_policy_failed():
+    members = jnp.arange(3.0)
+    per_robot = members[:, None] * jnp.ones((3, 4))
+    states = TrainState(
+        params=members,
+        averaged=members,
+        optimiser=members,
+        normaliser=members,
+        episode=per_robot,
+        observation=per_robot,
+        key=members,
+        update=members,
+        failures=Failures(group=per_robot, ended=members[:, None], failed=members[:, None]),
+    )
+    after = taken_over(states, np.array([1, 1, 1]), np.array([True, False, False]))
+    for learned in (after.params, after.averaged, after.optimiser, after.normaliser):
+        assert learned.tolist() == [1.0, 1.0, 1.0]
+    for robots in (after.episode, after.observation, after.failures.group):
+        assert robots[:, 0].tolist() == [1.0, 1.0, 2.0]
+    assert after.failures.ended[:, 0].tolist() == [1.0, 1.0, 2.0]
+    assert after.key.tolist() == [0.0, 1.0, 2.0]
+    ignored = taken_over(states.replace(failures=None), np.array([1, 1, 1]), np.zeros(3, bool))
+    assert ignored.failures is None
