@@ -64,9 +64,14 @@ COMMANDS = {
         "walk a controller in physics, and collect its footsteps",
     ),
     "gait fit": (
-        "jaxleas.footsteps.commands",
+        "jaxleas.footsteps.fit_command",
         "fit",
         "fit motion models to a controller's footsteps",
+    ),
+    "gait plan": (
+        "jaxleas.footsteps.plan_command",
+        "plan",
+        "plan the next footsteps of a controller",
     ),
     "sweep": ("jaxleas.sweeps.commands", "sweep", "search a space of configurations"),
     "population": (

@@ -1,4 +1,4 @@
-"""What a walking controller does with its velocity commands: records, motion models."""
+"""A walking controller's footsteps: records, motion models, foot cost map, velocity A*."""
 
 import lazy_loader
 

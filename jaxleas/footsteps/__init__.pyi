@@ -1,9 +1,14 @@
+from .cost_map import FootCostMap as FootCostMap
+from .cost_map import buffer_of as buffer_of
+from .cost_pictures import draw_cost_map as draw_cost_map
 from .fitting import FitSettings as FitSettings
 from .fitting import Fitted as Fitted
 from .fitting import fit_motion_models as fit_motion_models
 from .model import MotionModel as MotionModel
 from .model_file import read_motion_model as read_motion_model
 from .model_file import write_motion_model as write_motion_model
+from .plan import FootstepPlan as FootstepPlan
+from .plan import PlannedFootstep as PlannedFootstep
 from .record_file import read_footsteps as read_footsteps
 from .record_file import write_footsteps as write_footsteps
 from .records import FootstepRecords as FootstepRecords
@@ -13,3 +18,11 @@ from .records import movement_of as movement_of
 from .scores import Score as Score
 from .scores import mean_absolute_error as mean_absolute_error
 from .scores import r2_percent as r2_percent
+from .search import FootstepPlanner as FootstepPlanner
+from .search import SearchSettings as SearchSettings
+from .search import plan_footsteps as plan_footsteps
+from .search import settings_for as settings_for
+from .walking_state import Goal as Goal
+from .walking_state import WalkingState as WalkingState
+from .walking_state import require_goal as require_goal
+from .walking_state import require_start as require_start

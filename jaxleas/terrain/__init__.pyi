@@ -5,6 +5,10 @@ from .draw import VOID_COLOUR as VOID_COLOUR
 from .draw import draw_height_map as draw_height_map
 from .draw import require_picture as require_picture
 from .draw import save_picture as save_picture
+from .edges import Edges as Edges
+from .edges import EdgeSearch as EdgeSearch
+from .edges import find_edges as find_edges
+from .edges_jax import edge_distances as edge_distances
 from .generator import Arena as Arena
 from .generator import generate_arena as generate_arena
 from .height_map import HeightMap as HeightMap

@@ -1,13 +1,15 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from jaxleas import cli
-from jaxleas.files import read_npz, write_npz
+from jaxleas.files import read_npz, write_json, write_npz
 from jaxleas.footsteps import read_motion_model, write_footsteps
+from jaxleas.terrain import HeightMap, write_height_map
 from jaxleas.types import InputError
-from tests.footsteps.made import IDENTITY, walked
+from tests.footsteps.made import IDENTITY, NOMINAL, walked
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +69,56 @@ def test_a_model_of_another_version_is_refused(folder, tmp_path):
     write_npz(tmp_path / "cut.npz", **arrays)
     with pytest.raises(InputError, match=r"cut.npz: weights of shape \(18, 11\) where"):
         read_motion_model(tmp_path / "cut.npz")
+
+
+STATE = {
+    "controller": "made up",
+    "robot": "probe",
+    "com": [0.0, 0.0, 0.45],
+    "yaw": 0.0,
+    "feet": {
+        name: [x, y, 0.0] for name, (x, y) in zip(IDENTITY.feet, NOMINAL.tolist(), strict=True)
+    },
+    "next_foot": "LF",
+}
+
+
+@pytest.fixture
+def world(folder, tmp_path):
+    """Options of `gait plan` on flat ground."""
+    flat = HeightMap(np.zeros((100, 200), np.float32), 0.02, (-1.0, -1.0))
+    write_height_map(tmp_path / "flat.npz", flat)
+    write_json(tmp_path / "state.json", STATE)
+    return [
+        *("gait", "plan", str(tmp_path / "flat.npz"), "--models", str(folder / "fit/model.npz")),
+        *("--state", str(tmp_path / "state.json"), "--out", str(tmp_path / "plan.json")),
+    ]
+
+
+def test_a_plan_is_written_and_said(world, tmp_path, capsys):
+    cli.run([*world, "--goal", "1.5,0,0", "--picture", str(tmp_path / "costs.png")])
+    written = json.loads((tmp_path / "plan.json").read_text())
+    assert written["status"] == "horizon"
+    assert [each["swinging"] for each in written["footsteps"]] == [["LF", "RH"], ["RF", "LH"]]
+    assert written["command"] == written["footsteps"][0]["command"] == pytest.approx([0.8, 0, 0])
+    assert (tmp_path / "costs.png").exists()
+    assert "2 footsteps to the horizon" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "goal", "message"),
+    [
+        ({"robot": "anymal_b"}, "1,0", "robot is 'anymal_b', but the motion models are of 'probe'"),
+        ({"controller": "trot"}, "1,0", "controller is 'trot', but"),
+        ({"next_foot": "tail"}, "1,0", "next_foot is 'tail'; give one of LF, RF, LH, RH"),
+        ({"feet": {"LF": [0.0, 0.0, 0.0]}}, "1,0", "feet has LF; probe has LF, RF, LH, RH"),
+        ({"com": [0.0, 0.0]}, "1,0", "is no walking state: com"),
+        ({}, "12,0", "outside the map, which has x from -1.01 to 2.99"),
+        ({}, "there", "--goal is 'there'; give X,Y or X,Y,YAW"),
+    ],
+)
+def test_what_cannot_be_planned_is_refused(world, tmp_path, change, goal, message):
+    write_json(tmp_path / "state.json", STATE | change)
+    with pytest.raises(InputError, match=message):
+        cli.run([*world, "--goal", goal])
+    assert not (tmp_path / "plan.json").exists()

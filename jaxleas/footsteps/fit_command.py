@@ -1,4 +1,4 @@
-"""The functions behind `jaxleas gait fit` and `gait plan`."""
+"""The function behind `jaxleas gait fit`."""
 
 import sys
 from collections.abc import Sequence

@@ -1,0 +1,198 @@
+"""All footsteps from states: one prediction for all commands, then what the map refuses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.footsteps.cost_map import FAR_ENOUGH, FootCostMap
+from jaxleas.footsteps.features import turned
+from jaxleas.footsteps.framed_map import FramedMap
+from jaxleas.footsteps.model import MOTION, MotionModel
+from jaxleas.footsteps.plan import REFUSALS, Miss, Refusal
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A state of the search, predicted or measured.
+
+    Attributes:
+        com: x and y of the centre of mass [m].
+        yaw: heading [rad].
+        velocity: velocity of the centre of mass [m/s] and turning rate [rad/s], in its frame.
+        feet: positions of the feet [m].
+        pair: index of the pair that swings next.
+        command: command that led here.
+        spent: cost so far.
+        depth: number of footsteps so far.
+        parent: state before; None at the start.
+    """
+
+    com: Float[np.ndarray, "2"]
+    yaw: float
+    velocity: Float[np.ndarray, "4"]
+    feet: Float[np.ndarray, "E 3"]
+    pair: int
+    command: Float[np.ndarray, "3"]
+    spent: float = 0.0
+    depth: int = 0
+    parent: "Node | None" = None
+
+
+@dataclass(frozen=True, eq=False)
+class Children:
+    """The footsteps that commands lead to from some states; their swings are not yet checked.
+
+    Attributes:
+        parents: states that they begin in, all with the same pair swinging.
+        parent: index of the state that each begins in.
+        command: index of its command.
+        com: x and y of the centre of mass afterwards [m].
+        yaw: heading [rad].
+        velocity: velocity and turning rate, in the frame there.
+        landings: positions of the swinging feet [m].
+        near: how much nearer than `FAR_ENOUGH` the landings are to unsafe cells, in sum [m].
+    """
+
+    parents: list[Node]
+    parent: Int[np.ndarray, " K"]
+    command: Int[np.ndarray, " K"]
+    com: Float[np.ndarray, "K 2"]
+    yaw: Float[np.ndarray, " K"]
+    velocity: Float[np.ndarray, "K 4"]
+    landings: Float[np.ndarray, "K S 3"]
+    near: Float[np.ndarray, " K"]
+
+
+class Expander:
+    """Predicts and checks the footsteps of all commands from states, many at a time.
+
+    Args:
+        model: motion models.
+        costs: foot cost map.
+    """
+
+    def __init__(self, model: MotionModel, costs: FootCostMap) -> None:
+        self.model, self.controller = model, model.controller
+        self.commands = model.commands()
+        self.refused: dict[Refusal, int] = {}
+        self.miss: Miss | None = None
+        self.forget()
+        self._map = FramedMap(costs)
+        # The command's share of a prediction is the same in every state.
+        self._of_command = [self.commands @ weights[:3] for weights in model.weights]
+        self._of_state = [weights[3:] for weights in model.weights]
+
+    def forget(self) -> None:
+        """Begin to count refusals anew."""
+        self.refused = dict.fromkeys(REFUSALS, 0)
+        self.miss = None
+
+    def children(self, parents: list[Node]) -> Children:
+        """Return the footsteps that the map allows from states with one pair swinging."""
+        swinging = list(self.controller.pairs[parents[0].pair])
+        count = len(self.commands)
+        parent = np.repeat(np.arange(len(parents)), count)
+        command = np.tile(np.arange(count), len(parents))
+        com, yaw, velocity, places, is_known = self._predicted(parents, swinging)
+        lift_offs = np.stack([node.feet for node in parents])[:, swinging]
+
+        kept = self._allowed("unknown motion", np.arange(len(command)), is_known)
+        kept = self._allowed("map", kept, self._map.inside(com[kept]))
+        distance, height = self._map.at(places[kept])
+        short = self._map.buffer - distance
+        safe = (short < 0).all(axis=1)
+        self._note_miss(short[~safe], places[kept[~safe]], swinging)
+        kept, near = self._allowed("landing", kept, safe), FAR_ENOUGH - distance[safe]
+        height = height[safe]
+        rise = np.abs(height - lift_offs[parent[kept], :, 2]).max(axis=1, initial=0.0)
+        low = rise <= self.controller.swing_height
+        kept, near, height = self._allowed("step height", kept, low), near[low], height[low]
+        landings = np.concatenate([places[kept], height[..., None]], axis=-1)
+        return Children(
+            *(parents, parent[kept], command[kept], com[kept], yaw[kept], velocity[kept]),
+            *(landings, np.maximum(near, 0.0).sum(axis=1)),
+        )
+
+    def swings_clear(
+        self, children: Children, rows: Int[np.ndarray, " K"]
+    ) -> Bool[np.ndarray, " K"]:
+        """Return whether feet pass over the ground in some of the footsteps, not yet asked of them.
+
+        It costs more than all the rest, so that the search asks it of promising footsteps alone.
+        """
+        swinging = list(self.controller.pairs[children.parents[0].pair])
+        feet = [children.parents[parent].feet for parent in children.parent[rows].tolist()]
+        lift_offs = np.stack(feet)[:, swinging]
+        apex = self.controller.swing_height
+        clear = self._map.swings_clear(lift_offs, children.landings[rows], apex)
+        self.refused["swing"] += int(len(clear) - clear.sum())
+        return clear
+
+    def child(self, children: Children, index: int, spent: float) -> Node:
+        """Return one of the children as a state."""
+        parent = children.parents[children.parent[index]]
+        feet = parent.feet.copy()
+        feet[list(self.controller.pairs[parent.pair])] = children.landings[index]
+        return Node(
+            com=children.com[index],
+            yaw=float(children.yaw[index]),
+            velocity=children.velocity[index],
+            feet=feet,
+            pair=(parent.pair + 1) % len(self.controller.pairs),
+            command=self.commands[children.command[index]],
+            spent=spent,
+            depth=parent.depth + 1,
+            parent=parent,
+        )
+
+    def _predicted(self, parents: list[Node], swinging: list[int]) -> tuple[np.ndarray, ...]:
+        """Return poses, velocities, landings, and whether such motion is known from the data."""
+        pair, count = parents[0].pair, len(self.commands)
+        com = np.stack([node.com for node in parents])
+        yaw = np.array([node.yaw for node in parents])
+        feet = np.stack([node.feet for node in parents])[:, :, :2]
+        state = np.column_stack(
+            [
+                turned(feet - com[:, None], -yaw[:, None]).reshape(len(parents), -1),
+                np.stack([node.command for node in parents]),
+                np.stack([node.velocity for node in parents]),
+                np.ones(len(parents)),
+            ]
+        )
+        outputs = self._of_command[pair] + (state @ self._of_state[pair])[:, None]
+        outputs = outputs.reshape(len(parents) * count, -1)
+        before = np.repeat(yaw, count)
+        shift, turn = outputs[:, :2], outputs[:, 2]
+        is_known = (shift**2).sum(axis=1) <= self.model.longest_stride**2
+        is_known &= np.abs(turn) <= self.model.largest_turn
+        after = np.repeat(com, count, axis=0) + turned(shift, before)
+        moved = outputs[:, MOTION:].reshape(len(outputs), -1, 2)
+        if self.model.feet == "absolute":
+            base = np.repeat(feet[:, swinging], count, axis=0)
+            places = base + turned(moved, before[:, None])
+        else:
+            places = after[:, None] + turned(moved, (before + turn)[:, None])
+        return after, before + turn, outputs[:, 3:MOTION], places, is_known
+
+    def _allowed(
+        self, reason: Refusal, rows: Int[np.ndarray, " K"], allowed: Bool[np.ndarray, " K"]
+    ) -> Int[np.ndarray, " L"]:
+        """Return the rows that are allowed; the others are counted."""
+        kept = rows[allowed]
+        self.refused[reason] += len(rows) - len(kept)
+        return kept
+
+    def _note_miss(
+        self, short: Float[np.ndarray, "K S"], places: np.ndarray, swinging: list[int]
+    ) -> None:
+        """Keep the refused landing whose worse foot is the least short of safe."""
+        if not len(short):
+            return
+        worst = short.max(axis=1)
+        row = int(worst.argmin())
+        if self.miss is None or worst[row] < self.miss.short:
+            foot = int(short[row].argmax())
+            x, y = places[row, foot]
+            name = self.controller.feet[swinging[foot]]
+            self.miss = Miss(name, (float(x), float(y)), float(worst[row]))

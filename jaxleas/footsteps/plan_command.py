@@ -1,0 +1,88 @@
+"""The function behind `jaxleas gait plan`."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from jaxleas.footsteps.cost_map import FootCostMap, buffer_of
+from jaxleas.footsteps.cost_pictures import draw_cost_map
+from jaxleas.footsteps.model_file import read_motion_model
+from jaxleas.footsteps.search import Cost, SearchSettings, plan_footsteps, settings_for
+from jaxleas.footsteps.state_file import read_state, write_plan
+from jaxleas.footsteps.walking_state import Goal, require_goal, require_start
+from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
+from jaxleas.types import InputError
+
+
+def plan(
+    terrain: Path,
+    *,
+    models: Path,
+    state: Path,
+    goal: str,
+    out: Path,
+    horizon: int = 2,
+    exact: bool = False,
+    cost: Cost = "footsteps",
+    buffer: float | None = None,
+    picture: Path | None = None,
+    reading: Reading = READING,
+) -> None:
+    """Plan the next footsteps of a walking controller from a measured state.
+
+    Args:
+        terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
+        models: motion models of the controller, as `jaxleas gait fit` writes them.
+        state: file of the measured state (docs/files.md).
+        goal: pose to reach: X,Y or X,Y,YAW [m, rad].
+        out: file of the plan (.json).
+        horizon: number of footsteps to plan where the goal is farther.
+        exact: search until no plan can be better, however long; always so up to two footsteps.
+        cost: footsteps, or the thesis's greedy cost.
+        buffer: distance of a foot's centre from edges [m]; by default its radius and the 95 %
+            quantile of the error of its prediction.
+        picture: file for a picture of the map: measured, filtered, where feet may land.
+        reading: what the terrain file does not state itself.
+    """
+    if picture is not None:
+        require_picture(picture)
+    model = read_motion_model(models)
+    start = read_state(state, model.controller)
+    target = _goal(goal)
+    if reading.resolution is None and has_polygons(terrain):
+        reading = replace(reading, resolution=CELL)
+    height_map = import_terrain(terrain, reading)
+    costs = FootCostMap.of(height_map, buffer_of(model) if buffer is None else buffer)
+    require_goal(target, costs)
+    require_start(start, costs, model.controller)
+    if picture is not None:
+        draw_cost_map(height_map, costs, picture)
+    quick = settings_for(horizon)
+    chosen = SearchSettings(
+        horizon=horizon,
+        cost=cost,
+        slack=0.0 if exact else quick.slack,
+        merge=quick.merge and not exact,
+        most_expansions=MOST_EXACT if exact else quick.most_expansions,
+    )
+    found = plan_footsteps(model, costs, start, target, chosen)
+    write_plan(out, found, model.controller)
+    print(f"{found.in_words()}; {found.expansions} states expanded; written to {out}")
+
+
+CELL = 0.02
+"""Edge of a cell of polygons where none is stated [m]: half a foot."""
+MOST_EXACT = 1_000_000
+"""States after which even an exact search ends: its heap would fill the memory."""
+
+
+def _goal(text: str) -> Goal:
+    """Return the pose that X,Y or X,Y,YAW names."""
+    try:
+        numbers = [float(each) for each in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
+        raise InputError(f"--goal is '{text}'; give X,Y or X,Y,YAW in metres and radians: 2,0,0")
+    return Goal(*numbers) if len(numbers) == 3 else Goal(*numbers, angle=float(np.pi))

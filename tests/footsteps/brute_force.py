@@ -1,0 +1,113 @@
+"""All sequences of commands, one by one, in plain loops: the twin of the velocity A*."""
+
+import math
+
+from jaxleas.footsteps import FootCostMap, Goal, MotionModel, WalkingState
+
+
+def best_cost(
+    model: MotionModel,
+    costs: FootCostMap,
+    state: WalkingState,
+    goal: Goal,
+    horizon: int,
+    clearance: float,
+) -> float:
+    """Return the least cost of all plans that reach the goal or the horizon; infinity if none."""
+    cos, sin = math.cos(state.yaw), math.sin(state.yaw)
+    vx, vy, vz = state.com_velocity
+    velocity = [cos * vx + sin * vy, -sin * vx + cos * vy, vz, state.yaw_rate]
+    heights = [height_of(costs, x, y) for x, y, _ in state.feet]
+    feet = [
+        [x, y, z if math.isnan(height) else height]
+        for (x, y, z), height in zip(state.feet, heights, strict=True)
+    ]
+    start = (list(state.com[:2]), state.yaw, velocity, feet, state.pair, list(state.command))
+    return _least(model, costs, start, goal, horizon, clearance)
+
+
+def _least(model, costs, start, goal, horizon, clearance):
+    com, yaw, *_ = start
+    if _left(model, com, yaw, goal) == 0.0:
+        return 0.0
+    if horizon == 0:
+        return _left(model, com, yaw, goal)
+    least = math.inf
+    for command in model.commands().tolist():
+        stepped = step(model, costs, start, command)
+        if stepped is not None:
+            after, near = stepped
+            rest = _least(model, costs, after, goal, horizon - 1, clearance)
+            least = min(least, 1.0 + clearance * near + rest)
+    return least
+
+
+def _left(model, com, yaw, goal):
+    apart = math.hypot(com[0] - goal.x, com[1] - goal.y) - goal.distance
+    turn = abs(math.remainder(goal.yaw - yaw, 2 * math.pi)) - goal.angle
+    return max(apart / model.longest_stride, turn / model.largest_turn, 0.0)
+
+
+def step(model, costs, start, command):
+    """Return the state after a footstep and its nearness to edges; None where it is refused."""
+    com, yaw, velocity, feet, pair, previous = start
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    local = []
+    for x, y, _ in feet:
+        dx, dy = x - com[0], y - com[1]
+        local += [cos * dx + sin * dy, -sin * dx + cos * dy]
+    seen = [*command, *local, *previous, *velocity, 1.0]
+    weights = model.weights[pair].tolist()
+    outputs = [sum(w[k] * s for w, s in zip(weights, seen, strict=True)) for k in range(11)]
+    dx, dy, turn = outputs[:3]
+    if math.hypot(dx, dy) > model.longest_stride or abs(turn) > model.largest_turn:
+        return None
+    next_com = [com[0] + cos * dx - sin * dy, com[1] + sin * dx + cos * dy]
+    next_yaw = yaw + turn
+    if distance_of(costs, *next_com) is None:
+        return None
+    next_feet, near = [list(foot) for foot in feet], 0.0
+    for index, foot in enumerate(model.controller.pairs[pair]):
+        u, v = outputs[7 + 2 * index : 9 + 2 * index]
+        angle = next_yaw if model.feet == "relative" else yaw
+        base = next_com if model.feet == "relative" else feet[foot][:2]
+        x = base[0] + math.cos(angle) * u - math.sin(angle) * v
+        y = base[1] + math.sin(angle) * u + math.cos(angle) * v
+        distance = distance_of(costs, x, y)
+        if distance is None or distance <= costs.buffer:
+            return None
+        z = height_of(costs, x, y)
+        if not abs(z - feet[foot][2]) <= model.controller.swing_height:
+            return None
+        if _hits(costs, feet[foot], (x, y, z), model.controller.swing_height):
+            return None
+        near += max(0.07 - distance, 0.0)
+        next_feet[foot] = [x, y, z]
+    after = (next_com, next_yaw, outputs[3:7], next_feet, 1 - pair, command)
+    return after, near
+
+
+def _hits(costs, lift, land, apex):
+    for part in range(1, 9):
+        share = part / 9
+        x, y, z = (a + share * (b - a) for a, b in zip(lift, land, strict=True))
+        if height_of(costs, x, y) > z + 4 * apex * share * (1 - share) - 0.01:
+            return True
+    return False
+
+
+def _cell(costs, x, y):
+    size, (x0, y0) = costs.height_map.resolution, costs.height_map.origin
+    column, row = math.floor((x - x0) / size + 0.5), math.floor((y - y0) / size + 0.5)
+    rows, columns = costs.distance.shape
+    return (row, column) if 0 <= row < rows and 0 <= column < columns else None
+
+
+def distance_of(costs, x, y):
+    cell = _cell(costs, x, y)
+    return None if cell is None else float(costs.distance[cell])
+
+
+def height_of(costs, x, y):
+    cell = _cell(costs, x, y)
+    return math.nan if cell is None else float(costs.height_map.heights[cell])
