@@ -75,10 +75,9 @@ def test_a_missing_rival_is_said(tmp_path, capsys):
     assert error.count("\n") == 1
 
 
-@pytest.mark.parametrize("device", ["tpu", "gpu"])
-def test_a_missing_device_is_said(device):
+def test_a_missing_device_is_said():
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks", "--device", device, "--only", "export_latency_1"],
+        [sys.executable, "-m", "benchmarks", "--device", "gpu", "--only", "export_latency_1"],
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -88,7 +87,7 @@ def test_a_missing_device_is_said(device):
     if done.returncode == 0:
         pytest.skip("there is one here")
     assert done.returncode == 2
-    assert done.stderr.splitlines()[-1].startswith(f"benchmarks: --device {device}: ")
+    assert done.stderr.splitlines()[-1].startswith("benchmarks: --device gpu: ")
     assert "Traceback" not in done.stderr
 
 

@@ -25,7 +25,10 @@ def world():
     return training_world(tiny(), Steering(tiny().env, tiny().terrain))
 
 
-@pytest.fixture(scope="module", params=["thesis144", "icra81"])
+LAYOUTS = ["thesis144", pytest.param("icra81", marks=pytest.mark.slow)]
+
+
+@pytest.fixture(scope="module", params=LAYOUTS)
 def both(request, world, tmp_path_factory):
     """Our environment, and the rival's task read from the file that we write."""
     config = SteeringConfig(observation=request.param, episode_steps=40, goal_steps=(5, 20))

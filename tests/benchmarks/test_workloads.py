@@ -51,6 +51,7 @@ def test_the_environment(context):
     assert figure.rival is None
 
 
+@pytest.mark.slow
 def test_without_restarts_robots_that_have_failed_walk_on(context):
     env = context.env
     walk = environment._make_walk(env, 50, 64, 0)

@@ -50,8 +50,9 @@ def test_the_centre_of_mass_stays_over_the_sole_of_each_foot(planner) -> None:
             assert beyond.max() <= 1e-6, f"over {name}"
 
 
+@pytest.mark.slow
 def test_the_verdict_with_unequal_soles_is_that_of_brute_force() -> None:
-    verdicts, others = [], []
+    verdicts, unshown = [], [LONG, SHORT]
     for seed in range(30):
         described = {**random_world(seed, "two_com"), "foot_half_size": UNEQUAL}
         # From LF the centre of mass reaches farther: so either sole alone can be too small.
@@ -62,10 +63,11 @@ def test_the_verdict_with_unequal_soles_is_that_of_brute_force() -> None:
             assert plan.feasible == expected, (seed, start)
         assert plan_sl1m(problem(described), diagnose=False).feasible <= expected
         verdicts.append(expected)
-        others.append([twin({**described, "foot_half_size": size}) for size in (LONG, SHORT)])
+        unshown = [
+            size for size in unshown if twin({**described, "foot_half_size": size}) == expected
+        ]
     assert {*verdicts} == {True, False}
-    for equal in zip(*others, strict=True):
-        assert list(equal) != verdicts, "soles of one size would have given the same verdicts"
+    assert not unshown, "soles of one size would have given the same verdicts"
 
 
 def test_a_plan_that_is_right_with_the_sole_of_the_other_foot_only_is_refused() -> None:
