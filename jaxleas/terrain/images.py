@@ -20,7 +20,8 @@ _LOG = logging.getLogger("jaxleas")
 MAX_PNG_BYTES = 2**28
 GREY = np.array([0.299, 0.587, 0.114])
 """Weights of red, green and blue in grey (ITU-R BT.601), as OpenCV and Pillow have them."""
-COARSE_BITS = 8
+FINE_STEP = 1e-3
+"""Distance of grey levels up to which nothing is lost that a foot would notice [m]."""
 _PALETTE, _ALPHA = 3, 4  # colour type of a PNG; bit of those with an alpha channel
 
 
@@ -54,7 +55,7 @@ def import_png(
     """Return the height map of an image: black is z_min, white is z_max, north up.
 
     Colours count by their grey. Pixels less than half opaque are no ground. How far neighbouring
-    grey levels lie apart is said of images of 8 bits and less.
+    grey levels lie apart is said.
 
     Args:
         path: path of a PNG file, whose last row is the map's first.
@@ -81,12 +82,21 @@ def import_png(
         rows, columns = heights.shape
         raise InputError(f"{path} has {columns} x {rows} pixels; at least 2 x 2")
     require_usable(heights, resolution, path)
-    if image.levels <= 2**COARSE_BITS:
-        _LOG.warning(
-            "%s has %d grey levels, %.2g mm apart: heights between them are lost",
-            *(path, image.levels, 1000.0 * (z_max - z_min) / (image.levels - 1)),
-        )
+    say_step(path, image.levels, z_max - z_min)
     return HeightMap(heights, float(resolution), (0.5 * resolution, 0.5 * resolution))
+
+
+def say_step(path: str | Path, levels: int, span: float) -> None:
+    """Say how far the grey levels of an image lie apart.
+
+    Args:
+        path: path of the image.
+        levels: number of different levels that the file can state.
+        span: height of white above black [m].
+    """
+    step = span / (levels - 1)
+    lost = ": heights between them are lost" if step > FINE_STEP else ""
+    _LOG.warning("%s has %d grey levels, %.2g mm apart%s", path, levels, 1000.0 * step, lost)
 
 
 def read_levels(path: Path) -> Levels:

@@ -15,6 +15,7 @@ from jaxleas.terrain.height_map import (
     require_usable,
     without_no_data,
 )
+from jaxleas.terrain.images import say_step
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.shaping import brought_near
 from jaxleas.types import InputError, is_ground
@@ -35,6 +36,12 @@ def read_tiff(path: Path, reading: Reading) -> HeightMap:
         raise InputError(f"{path}: z_min and z_max go together: the heights of black and white")
     if reading.z_min is not None and reading.z_max is not None:
         values = _grey(path, values, arrays, (reading.z_min, reading.z_max))
+    elif arrays["whole"]:
+        _LOG.warning(
+            "%s holds whole numbers: each step is %g m of height; --scale, or --z-min and --z-max,"
+            " say otherwise",
+            *(path, reading.scale),
+        )
     cell, corner = arrays.get("cell"), arrays.get("corner")
     if cell is None or corner is None:
         if reading.resolution is None:
@@ -54,7 +61,7 @@ def _grey(
     if not (np.isfinite(span).all() and span[0] < span[1]):
         raise InputError(f"{path}: z_min {span[0]:g} m must be below z_max {span[1]:g} m")
     white = float(arrays["levels"]) - 1.0
-    _LOG.warning("%s: its grey levels lie %.2g mm apart", path, 1e3 * (span[1] - span[0]) / white)
+    say_step(path, int(arrays["levels"]), span[1] - span[0])
     return span[0] + (span[1] - span[0]) * values / white
 
 

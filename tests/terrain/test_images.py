@@ -129,7 +129,7 @@ def test_colours_are_weighed_as_grey_and_coarse_steps_are_said(tmp_path, caplog)
     caplog.clear()
     Image.fromarray(np.arange(16, dtype=np.uint16).reshape(4, 4)).save(tmp_path / "deep.png")
     import_png(tmp_path / "deep.png", 0.1, 0.0, 1.0)
-    assert not caplog.records
+    assert caplog.messages == [f"{tmp_path}/deep.png has 65536 grey levels, 0.015 mm apart"]
 
 
 def test_broken_deep_images_are_refused(tmp_path):

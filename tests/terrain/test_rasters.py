@@ -83,6 +83,7 @@ def test_a_plain_tiff_is_heights_or_grey_levels(tmp_path, caplog):
         import_terrain(tmp_path / "grey.tif")
     metres = import_terrain(tmp_path / "grey.tif", resolution=0.1, scale=0.01)
     np.testing.assert_allclose(metres.heights, 0.01 * levels[::-1])
+    assert "holds whole numbers: each step is 0.01 m of height" in caplog.text
     grey = import_terrain(
         tmp_path / "grey.tif", resolution=0.1, z_min=1.0, z_max=2.0, zero_is_void=True
     )
@@ -90,7 +91,7 @@ def test_a_plain_tiff_is_heights_or_grey_levels(tmp_path, caplog):
         grey.heights[grey.heights > 0], (1.0 + levels / 255.0)[::-1][levels[::-1] > 0]
     )
     assert np.isnan(grey.heights[2, 0])
-    assert "grey levels lie 3.9 mm apart" in caplog.text
+    assert "has 256 grey levels, 3.9 mm apart: heights between" in caplog.text
     with pytest.raises(InputError, match="z_min and z_max go together"):
         import_terrain(tmp_path / "grey.tif", resolution=0.1, z_min=1.0)
 

@@ -2,7 +2,8 @@
 
 Sends so many mutated files through all readers. Each must be accepted, or refused by one sentence,
 in bounded time and memory. Says what broke that, how to make the same input again, the slowest and
-the hungriest. Ends with exit code 1 if anything broke.
+the hungriest. Ends with exit code 1 if anything broke. The result is written every 10,000 inputs,
+and --resume continues from it.
 """
 
 import argparse
@@ -18,9 +19,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.measurements import this_machine
+from jaxleas.files import write_text
 
 SILENCE = 90.0  # without a word a process is taken to hang [s]
-A_PROCESS = 20_000  # inputs, then a fresh one: what readers keep (compiled programs) goes with it
+A_PROCESS = 10_000  # inputs, then a fresh one: what readers keep (compiled programs) goes with it
 
 
 def main() -> int:
@@ -31,33 +33,45 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", help="one kind of file")
     parser.add_argument("--json", type=Path, help="where to write the result")
+    parser.add_argument("--resume", action="store_true", help="continue from the result in --json")
     given = parser.parse_args()
+    if given.resume and not given.json:
+        parser.error("--resume continues from a result: say --json")
+    before = json.loads(given.json.read_text()) if given.resume else {}
+    tally = Tally(before)
     begun = time.monotonic()
-    tally = Tally()
-    first, last = given.first, given.first + given.inputs
+    first, last = given.first + before.get("inputs", 0), given.first + given.inputs
     while first < last:
         first = _one_process(first, min(first + A_PROCESS, last), given.seed, given.only, tally)
-    report = tally.report() | {
-        "command": f"python -m benchmarks.strangers --inputs {given.inputs} --seed {given.seed}",
-        "seconds": round(time.monotonic() - begun),
-        "processor_seconds": round(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime),
-        "machine": this_machine(),
-    }
-    text = json.dumps(report, indent=2)
-    print(text)
-    if given.json:
-        given.json.write_text(text + "\n")
+        if given.json:
+            write_text(given.json, _text(tally, given, time.monotonic() - begun, before) + "\n")
+    print(_text(tally, given, time.monotonic() - begun, before))
     return 1 if tally.failures else 0
 
 
-class Tally:
-    """What became of the inputs."""
+def _text(tally: "Tally", given: argparse.Namespace, seconds: float, before: dict[str, Any]) -> str:
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    report = tally.report() | {
+        "command": f"python -m benchmarks.strangers --inputs {given.inputs} --seed {given.seed}",
+        "seconds": round(seconds) + before.get("seconds", 0),
+        "processor_seconds": round(spent.ru_utime + spent.ru_stime)
+        + before.get("processor_seconds", 0),
+        "machine": this_machine(),
+    }
+    return json.dumps(report, indent=2)
 
-    def __init__(self) -> None:
+
+class Tally:
+    """What became of the inputs, added to what a report of earlier ones says."""
+
+    def __init__(self, before: dict[str, Any]) -> None:
         self.outcomes: dict[str, Counter[str]] = defaultdict(Counter)
-        self.failures: dict[str, dict[str, Any]] = {}
-        self.slowest: dict[str, Any] = {"seconds": 0.0}
-        self.hungriest: dict[str, Any] = {"megabytes": 0.0}
+        self.outcomes.update({k: Counter(each) for k, each in before.get("kinds", {}).items()})
+        self.failures: dict[str, dict[str, Any]] = {
+            f"{each['kind']}: {each['failure']}": each for each in before.get("failures", [])
+        }
+        self.slowest: dict[str, Any] = before.get("slowest", {"seconds": 0.0})
+        self.hungriest: dict[str, Any] = before.get("hungriest", {"megabytes": 0.0})
 
     def add(self, line: dict[str, Any]) -> None:
         """Take one line of a process that reads."""

@@ -45,7 +45,7 @@ def imported_kinds(folder: Path) -> list[Kind]:
     grey = partial(import_terrain, resolution=0.1, z_min=0.0, z_max=1.0)
     table = partial(import_terrain, resolution=0.1)
     kinds = [("text PLY", "text.ply", _text_ply(), coarse, m.mutate_text)]
-    kinds += [("binary PLY", "binary.ply", _binary_ply(), coarse, m.mutate_bytes)]
+    kinds += [("binary PLY", "binary.ply", binary_ply("<"), coarse, m.mutate_bytes)]
     kinds += [("OFF", "mesh.off", _off(), coarse, m.mutate_text)]
     kinds += [("boxes", "boxes.yaml", BOXES.encode(), coarse, m.mutate_text)]
     kinds += [("npy", "heights.npy", _npy(), table, m.mutate_bytes)]
@@ -77,11 +77,13 @@ def _text_ply() -> bytes:
     return "\n".join([*head, *rows, ""]).encode()
 
 
-def _binary_ply() -> bytes:
+def binary_ply(order: str) -> bytes:
+    """Return a binary PLY in a byte order, "<" or ">"."""
     head = _text_ply().partition(b"end_header\n")
-    faces = b"".join(bytes([len(f)]) + np.array(f, "<i4").tobytes() for f in FACES)
-    layout = head[0].replace(b"ascii", b"binary_little_endian")
-    return layout + head[1] + POINTS.astype("<f4").tobytes() + faces
+    faces = b"".join(bytes([len(f)]) + np.array(f, f"{order}i4").tobytes() for f in FACES)
+    name = b"binary_little_endian" if order == "<" else b"binary_big_endian"
+    layout = head[0].replace(b"ascii", name)
+    return layout + head[1] + POINTS.astype(f"{order}f4").tobytes() + faces
 
 
 def _off() -> bytes:
@@ -130,27 +132,28 @@ def _tiff() -> bytes:
 def _bag(folder: Path) -> bytes:
     from rosbags.rosbag1 import Writer
 
-    path, store = folder / "made.bag", _store(1)
+    path, store = folder / "made.bag", message_store(1)
     with Writer(path) as writer:
-        connection = writer.add_connection("/map", _MAP, typestore=store)
-        writer.write(connection, 1, store.serialize_ros1(_grid_map(store, 1), _MAP))
+        connection = writer.add_connection("/map", GRID_MAP, typestore=store)
+        writer.write(connection, 1, store.serialize_ros1(grid_map(store, 1), GRID_MAP))
     return path.read_bytes()
 
 
 def _mcap(folder: Path) -> bytes:
     from rosbags.rosbag2 import StoragePlugin, Writer
 
-    path, store = folder / "made", _store(2)
+    path, store = folder / "made", message_store(2)
     with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        connection = writer.add_connection("/map", _MAP, typestore=store)
-        writer.write(connection, 1, store.serialize_cdr(_grid_map(store, 2), _MAP))
+        connection = writer.add_connection("/map", GRID_MAP, typestore=store)
+        writer.write(connection, 1, store.serialize_cdr(grid_map(store, 2), GRID_MAP))
     return next(path.glob("*.mcap")).read_bytes()
 
 
-_MAP = "grid_map_msgs/msg/GridMap"
+GRID_MAP = "grid_map_msgs/msg/GridMap"
 
 
-def _store(version: int) -> Any:
+def message_store(version: int) -> Any:
+    """Return the message types of a version of ROS, GridMap among them."""
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     header = "std_msgs/Header header\n"
@@ -162,11 +165,13 @@ def _store(version: int) -> Any:
     store = get_typestore(Stores.ROS1_NOETIC if version == 1 else Stores.ROS2_HUMBLE)
     texts = (header + info, body) if version == 1 else (info, header + body)
     store.register(get_types_from_msg(texts[0], "grid_map_msgs/msg/GridMapInfo"))
-    store.register(get_types_from_msg(texts[1], _MAP))
+    store.register(get_types_from_msg(texts[1], GRID_MAP))
     return store
 
 
-def _grid_map(store: Any, version: int) -> Any:
+def grid_map(store: Any, version: int) -> Any:
+    """Return a message of 3 x 4 cells whose buffer was moved round."""
+
     def make(name: str, **values: Any) -> Any:
         return store.types[name.replace("/", "/msg/")](**values)
 
@@ -186,7 +191,7 @@ def _grid_map(store: Any, version: int) -> Any:
     ]
     layout = make("std_msgs/MultiArrayLayout", dim=dims, data_offset=0)
     data = make("std_msgs/Float32MultiArray", layout=layout, data=np.zeros(12, np.float32))
-    return store.types[_MAP](
+    return store.types[GRID_MAP](
         info=info,
         layers=["elevation"],
         basic_layers=[],

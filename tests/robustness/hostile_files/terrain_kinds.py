@@ -12,6 +12,7 @@ from tests.robustness.hostile_files import binary_mutations as b
 from tests.robustness.hostile_files import mutations as m
 from tests.robustness.hostile_files.imported_kinds import imported_kinds
 from tests.robustness.hostile_files.kinds import Kind, kind_of
+from tests.robustness.hostile_files.variant_kinds import variant_kinds
 
 
 def floor() -> Scene:
@@ -77,4 +78,5 @@ def terrain_kinds(folder: Path) -> list[Kind]:
         ),
         kind_of("concave OBJ", folder / "concave.obj", mesh, m.mutate_text),
         *imported_kinds(folder),
+        *variant_kinds(folder),
     ]
