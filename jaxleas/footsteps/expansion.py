@@ -101,7 +101,7 @@ class Expander:
         kept = self._allowed("map", kept, self._map.inside(com[kept]))
         distance, height = self._map.at(places[kept])
         short = self._map.buffer - distance
-        safe = (short < 0).all(axis=1)
+        safe = np.all(short < 0, axis=1)
         self._note_miss(short[~safe], places[kept[~safe]], swinging)
         kept, near = self._allowed("landing", kept, safe), FAR_ENOUGH - distance[safe]
         height = height[safe]

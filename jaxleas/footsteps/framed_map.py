@@ -37,7 +37,7 @@ class FramedMap:
     def inside(self, places: Float[np.ndarray, "K 2"]) -> Bool[np.ndarray, " K"]:
         """Return whether places are on the map."""
         cells = np.floor((places - self._origin) / self._cell + 1.5)
-        return ((cells >= 1) & (cells < self._last)).all(axis=1)
+        return np.all((cells >= 1) & (cells < self._last), axis=1)
 
     def swings_clear(
         self,
@@ -53,7 +53,8 @@ class FramedMap:
         path = lift_offs[:, :, None] + (landings - lift_offs)[:, :, None] * along
         ground = self._flat_height[self._index(path[..., :2])]
         arc = 4 * apex * SWING_SAMPLES * (1 - SWING_SAMPLES) - SWING_MARGIN
-        return ~(ground > path[..., 2] + arc).any(axis=(1, 2))  # false for NaN
+        hit = ground > path[..., 2] + arc  # false for NaN
+        return ~np.any(hit, axis=(1, 2))
 
     def _index(self, places: Float[np.ndarray, "*batch 2"]) -> np.ndarray:
         """Return the indices, in the flat framed map, of the cells around places."""

@@ -147,7 +147,8 @@ class _Search:
 
     def run(self, start: Node) -> FootstepPlan:
         if self._is_there(start.com[None], np.array([start.yaw])).all():
-            self._best, self._total = ("reached", start), 0.0
+            self._best = ("reached", start)
+            self._total = 0.0
             return self._plan(0.0)
         self._expand([start])
         # All that is open costs at least its key, and a plan may cost the slack more.
@@ -223,7 +224,8 @@ class _Search:
             left[index] = np.inf
             if self._expander.swings_clear(children, np.array([index]))[0]:
                 end = self._expander.child(children, index, float(spent[index]))
-                self._best, self._total = (status, end), total
+                self._best = (status, end)
+                self._total = total
 
     @staticmethod
     def _merged(children: Children, depth: int) -> list[list[float]]:

@@ -120,7 +120,7 @@ def distance_to(
     from scipy import ndimage
 
     framed = np.pad(unsafe, 1, constant_values=True)
-    return resolution * ndimage.distance_transform_edt(~framed)[1:-1, 1:-1]
+    return resolution * np.asarray(ndimage.distance_transform_edt(~framed))[1:-1, 1:-1]
 
 
 def _median_of_known(heights: Float[np.ndarray, "rows columns"]) -> np.ndarray:
