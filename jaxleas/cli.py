@@ -51,6 +51,11 @@ COMMANDS = {
         "export",
         "write a contact plan for other programs",
     ),
+    "transition check": (
+        "jaxleas.dynamics.croc.commands",
+        "check",
+        "say whether a robot can cross from one support to the next",
+    ),
     "label": ("jaxleas.labels.commands", "label", "judge guide paths by an exact planner"),
     "fit": ("jaxleas.surrogates.commands", "fit", "fit a surrogate of a planner to its labels"),
     "distill": (

@@ -1,0 +1,1 @@
+"""Contact transitions drawn at random, and those of the reference with their verdicts."""

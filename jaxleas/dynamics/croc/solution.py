@@ -1,0 +1,55 @@
+"""Answers to contact transitions, and how their search ended."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from jaxtyping import Bool, Float, Int
+
+from jaxleas.dynamics.croc.curves import namespace
+from jaxleas.dynamics.croc.transitions import LEAST_MARGIN, Numbers
+
+TOLERANCE = 1e-6  # gap between the margin and its upper bound at which a search ends [1]
+CLOSE = 1e-5  # largest gap of a known margin: the last digits may drown in rounding [1]
+MOST_ITERATIONS = 40
+RESIDUAL = 1e-5  # largest error of the balance of forces [body weights, body weights m]
+PROXIMAL = 1e-7  # weight that keeps forces near where they are, where nothing else holds them
+NARROWEST = 1e-8  # least pivot of a support's wrenches [m^2]: 0.1 mm wide at least
+
+
+class Ended(IntEnum):
+    """How the search for a margin ended."""
+
+    CONVERGED = 0
+    NOT_CONVERGED = 1
+    """The margin is no verdict: out of iterations, or numbers too large for doubles."""
+    UNSUPPORTED = 2
+    """A phase stands on nothing, on one point or on a line: no margin exists."""
+
+
+class Solutions(NamedTuple):
+    """Margins of a batch of transitions, with what proves them.
+
+    Attributes:
+        margin: the largest margin [1], to 1e-5; the best found where the search did not converge,
+            minus infinity without support.
+        free_point: free control point of the curve in the world [m].
+        forces: force of each point at each force instant [body weights].
+        ended: how the search ended, a number of `Ended`.
+        iterations: number of iterations.
+    """
+
+    margin: Float[Numbers, "*batch"]
+    free_point: Float[Numbers, "*batch 3"]
+    forces: Float[Numbers, "*batch S W P 3"]
+    ended: Int[Numbers, "*batch"]
+    iterations: Int[Numbers, "*batch"]
+
+    def feasible(self, least: float = LEAST_MARGIN) -> Bool[Numbers, "*batch"]:
+        """Return where the margin is known and large enough.
+
+        Args:
+            least: least margin of an accepted transition; 0 for the plain linear program.
+        """
+        return namespace(self.margin).logical_and(
+            self.ended == Ended.CONVERGED, self.margin >= least
+        )
