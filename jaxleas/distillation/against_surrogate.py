@@ -78,7 +78,7 @@ class AgainstSurrogate:
         folders = [place.folder.round(each).labels for each in range(1, number + 1)]
         labels = read_labels(folders, [], place.run_config.terrain.resolution)
         surrogate = fit(
-            labels.walks,
+            labels.paths,
             labels.atlas,
             place.env,
             place.identity,

@@ -71,4 +71,4 @@ def _drawn(
 def _placed(frame: TileFrame, corners: np.ndarray, height: float) -> np.ndarray:
     """Return corners in the world, of points around the tile's middle at height 0."""
     along = corners[:, :2] + np.array([0.5 * frame.size, 0.0])
-    return np.column_stack([frame.world(along), corners[:, 2] + height])
+    return np.column_stack([frame.to_world(along), corners[:, 2] + height])
