@@ -75,14 +75,15 @@ def _transition(
         spare = rows - len(phase["Kin"])
         bounds = np.pad(np.array(phase["kin"]), (0, spare), constant_values=_NO_ROW)
         reach.append((np.pad(np.array(phase["Kin"]), ((0, spare), (0, 0)))[None], bounds[None]))
-    ends = [
+    start, end = [
         BoundaryState(
             *(np.array(entry[name.format(k)], np.float64) for name in ("c{}", "dc{}", "ddc{}"))
         )
         for k in (0, 1)
     ]
     return Transitions(
-        *ends,
+        start,
+        end,
         np.array(durations),
         Supports(*(np.array(part) for part in zip(*supports, strict=True))),
         Reach(*(np.array(part) for part in zip(*reach, strict=True))),

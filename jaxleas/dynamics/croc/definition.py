@@ -123,12 +123,13 @@ class _Parts:
         sizes = [columns.shape[1] for _, columns, _ in self.balances]
         rows = sparse.vstack([sparse.csr_matrix(left) for left, _ in self.upper])
         width = sum(sizes)
-        upper = [sparse.hstack([rows, sparse.csr_matrix((rows.shape[0], width))])]
+        height = sum(len(left) for left, _ in self.upper)
+        upper = [sparse.hstack([rows, sparse.csr_matrix((height, width))])]
         bounds = [np.concatenate([right for _, right in self.upper])]
         # normal . f <= limit - margin, where f leans on the normal by its share of the margin, too.
         loads = sparse.block_diag(self.loads)
         lean = lean_of(self.transition.limits.friction, self.discretisation.generators)
-        share = np.full(loads.shape[0], lean + 1.0)
+        share = np.full(sum(len(load) for load in self.loads), lean + 1.0)
         upper.append(sparse.hstack([np.zeros((len(share), 3)), share[:, None], loads]))
         bounds.append(np.full(len(share), self.transition.limits.force))
         equal = sparse.hstack(

@@ -1,6 +1,7 @@
 """Programs of transitions solved on the host by compiled loops, in doubles, on several threads."""
 
 import importlib
+import importlib.util
 import os
 from concurrent.futures import ThreadPoolExecutor
 from types import ModuleType

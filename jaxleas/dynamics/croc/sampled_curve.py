@@ -39,7 +39,8 @@ def one_of(transitions: Transitions, index: int | tuple[int, ...]) -> Transition
     limits = type(transitions.limits)(
         *(float(np.broadcast_to(value, batch)[index]) for value in transitions.limits)
     )
-    return Transitions(*(pick(value) for value in transitions[:-1]), limits)
+    start, end, durations, supports, reach = (pick(value) for value in transitions[:-1])
+    return Transitions(start, end, durations, supports, reach, limits)
 
 
 def moment(

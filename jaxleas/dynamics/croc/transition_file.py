@@ -107,11 +107,13 @@ def read_transition(path: str | Path) -> TransitionFile:
         reach.append(_reach(where, phase, rows))
     weight = stated.mass * GRAVITY
     limit = NO_FORCE_LIMIT if stated.force_limit is None else stated.force_limit / weight
+    start, end = (
+        BoundaryState(*(np.array(part) for part in (s.com, s.velocity, s.acceleration)))
+        for s in (stated.start, stated.end)
+    )
     transition = Transitions(
-        *(
-            BoundaryState(*(np.array(part) for part in (s.com, s.velocity, s.acceleration)))
-            for s in (stated.start, stated.end)
-        ),
+        start,
+        end,
         np.array([phase.duration for phase in stated.phases]),
         Supports(*(np.array(part) for part in zip(*supports, strict=True))),
         Reach(*(np.array(part) for part in zip(*reach, strict=True))),
