@@ -8,7 +8,7 @@ from benchmarks.maps.walks import Walk
 from jaxleas.contacts import ContactPlan, ContactProblem, plan_mip, problem_from_guide
 from jaxleas.contacts.from_guide import NoGroundError
 from jaxleas.contacts.surfaces import make_surface
-from jaxleas.terrain import HeightMap, Scene, find_surfaces, rasterise
+from jaxleas.terrain import HeightMap, PlaneSearch, Scene, find_surfaces, rasterise
 
 CELL, NOISE = 0.02, 0.01  # of the maps [m]
 GOOD = 0.02  # distance from true ground within which a foot stands well [m]
@@ -44,16 +44,17 @@ class Terrain:
         self.scene, self.number = scene, number
         self.truth = [make_surface(each, "true surface") for each in scene.walkable.values()]
         self.ground = rasterise(scene, 0.5 * CELL)
-        self._found: dict[int, Scene] = {}
+        self._found: dict[tuple[int, float | None], Scene] = {}
 
-    def found(self, seed: int) -> Scene:
+    def found(self, seed: int, inset: float | None) -> Scene:
         """Return the surfaces found in the terrain's map with white noise."""
-        if seed not in self._found:
+        if (seed, inset) not in self._found:
             exact = rasterise(self.scene, CELL)
             noise = NOISE * np.random.default_rng([seed, self.number]).normal(size=exact.shape)
             heights = (exact.heights + noise).astype(np.float32)
-            self._found[seed] = Scene(find_surfaces(replace(exact, heights=heights)).polygons)
-        return self._found[seed]
+            found = find_surfaces(replace(exact, heights=heights), PlaneSearch(inset=inset))
+            self._found[seed, inset] = Scene(found.polygons)
+        return self._found[seed, inset]
 
 
 _LAST: list[Terrain] = []  # of this process
@@ -65,10 +66,16 @@ def _terrain(walk: Walk) -> Terrain:
     return _LAST[0]
 
 
-def judged(walk: Walk, seed: int | None) -> Judgement:
-    """Plan a walk on its true scene, or on the surfaces found in a map with a seed of noise."""
+def judged(walk: Walk, seed: int | None, inset: float | None = None) -> Judgement:
+    """Plan a walk on its true scene, or on the surfaces found in a map with a seed of noise.
+
+    Args:
+        walk: guide path and its terrain.
+        seed: seed of the noise; None: the true scene.
+        inset: length by which the surfaces found are drawn in from their edges [m].
+    """
     terrain = _terrain(walk)
-    scene = walk.scene if seed is None else terrain.found(seed)
+    scene = walk.scene if seed is None else terrain.found(seed, inset)
     try:
         problem = problem_from_guide(walk.path, scene, ROBOT)
     except NoGroundError:

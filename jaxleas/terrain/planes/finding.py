@@ -6,6 +6,7 @@ from jaxtyping import Bool, Float, Int
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.planes.alike import settle_alike
 from jaxleas.terrain.planes.assigning import assign
+from jaxleas.terrain.planes.bearing import without_corners_in_the_air
 from jaxleas.terrain.planes.found import Cell, FoundSurfaces
 from jaxleas.terrain.planes.growing import flat_windows, grow_regions
 from jaxleas.terrain.planes.joining import joined, regions_of
@@ -22,6 +23,8 @@ WIDTHS = (0.3, 0.2, 0.1)
 """Widths of the windows in which planes are fitted, the largest first [m]."""
 ROUNDS = 2
 """Number of times that cells are assigned again."""
+BLUR = 3.0
+"""Standard deviations of the noise by which surfaces are drawn in, besides half a cell."""
 PART = 0.5
 """Part of the smallest area of a surface below which a convex part of one is left out."""
 
@@ -61,6 +64,7 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
             continue
         lifted = region.lifted(middle)
         parts = polygons_of(lifted, height_map, inset, PART * search.min_area)
+        parts = without_corners_in_the_air(parts, height_map, max(noise, off))
         if not parts:
             cells[region.box][region.cells] = Cell.SMALL
             continue
@@ -71,8 +75,8 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
 
 
 def _known_to(cell: float, noise: float) -> float:
-    """Return how well an edge is known [m]: to half a cell, and noise blurs it as far again."""
-    return 0.5 * cell + (noise if noise > LEAST_NOISE else 0.0)
+    """Return how well an edge is known [m]: to half a cell, and noise blurs where planes cross."""
+    return 0.5 * cell + (BLUR * noise if noise > LEAST_NOISE else 0.0)
 
 
 def _centred(
