@@ -2,7 +2,8 @@
 
 python -m benchmarks.maps PART ... [--paths N] [--noises N] [--held-out] [--processes N] [--inset X]
 
-With --inset the figures end in _inset: plans on surfaces drawn in that far. Each part replaces its own figures in benchmarks/results/maps.json.
+With --inset the figures end in _inset: plans on surfaces drawn in that far. Each part replaces its
+own figures in benchmarks/results/maps.json.
 """
 
 import argparse

@@ -33,6 +33,10 @@ from jaxleas.terrain import (
 from jaxleas.types import InputError
 
 __all__ = ["NotCertifiedError", "check", "contacts", "plan"]
+NO_OBSTACLES = (
+    "a problem file states no obstacles: whether the trunk touches any was not looked at; jaxleas"
+    " contacts, and check with --guide and --scene, look"
+)
 
 
 def plan(
@@ -68,11 +72,15 @@ def plan(
     if found.needs == "guide":
         followed = along_roots(asked)
         answer = found.plan(followed, settings, time_limit=time_limit)
-        return report_plan(answer, followed, out, picture)
-    if without_guide:
-        asked = asked.without_guide()
-    answer = found.plan(asked, settings, time_limit=time_limit)
-    return report_plan(answer, asked, out, picture)
+        report_plan(answer, followed, out, picture)
+    else:
+        if without_guide:
+            asked = asked.without_guide()
+        answer = found.plan(asked, settings, time_limit=time_limit)
+        report_plan(answer, asked, out, picture)
+    if answer.feasible:
+        print(NO_OBSTACLES)
+    return answer
 
 
 def check(

@@ -1,5 +1,6 @@
 """Tables of heights: .npy arrays, and text with commas, semicolons, tabs or spaces."""
 
+import codecs
 import csv
 import io
 from pathlib import Path
@@ -50,6 +51,8 @@ def _map(path: Path, heights: np.ndarray, reading: Reading) -> HeightMap:
         raise InputError(
             f"{path} is a table of heights: say its resolution, the edge of a cell [m]"
         )
+    if heights.ndim == 3 and 1 in (heights.shape[0], heights.shape[2]):
+        heights = heights.squeeze(0 if heights.shape[0] == 1 else 2)
     if heights.dtype.kind not in "fiu" or heights.ndim != 2 or min(heights.shape) < 2:
         raise InputError(
             f"{path} holds {heights.dtype} of shape {heights.shape}; a map is at least 2 x 2"
@@ -101,8 +104,9 @@ def _points_map(
 def _rows(path: Path) -> tuple[list[str] | None, Float[np.ndarray, "N K"]]:
     """Return the names in the first row, if they are names, and the numbers."""
     content = without_mark(read_bytes(path, MAX_TEXT))
+    wide = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # as spreadsheets save it
     try:
-        text = content.decode()
+        text = content.decode("utf-16" if wide else "utf-8")
     except UnicodeDecodeError as error:
         raise InputError(f"{path} is not a text table: {error.reason}") from error
     lines = [line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]

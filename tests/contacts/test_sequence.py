@@ -15,6 +15,7 @@ from jaxleas.contacts.sequence.schedule import schedule_of
 from jaxleas.contacts.sequence.timing import SHORTEST, apart
 from jaxleas.contacts.sequence.values import ContactSequence, Landing
 from jaxleas.files import write_json, write_npz
+from jaxleas.robots import RecordedRobot, load_robot
 from jaxleas.types import Contact, InputError, Pose, Stance
 from tests.contacts.test_from_guide import straight
 from tests.contacts.worlds import problem, rectangle, stones
@@ -252,3 +253,36 @@ def test_crocoddyl_makes_a_shooting_problem_of_the_phases(folder) -> None:
     assert isinstance(made, crocoddyl.ShootingProblem)
     states = [walk.start] * (made.T + 1)
     assert np.isfinite(made.calc(states, list(made.quasiStatic(states[:-1]))))
+
+
+def recorded(folder: Path, robot: str) -> None:
+    """Write the guide path of the folder again, with the robot that walked it."""
+    with np.load(folder / "guide.npz") as arrays:
+        write_npz(folder / "guide.npz", **arrays, **RecordedRobot.of(robot).to_arrays())
+
+
+def test_a_guide_path_of_another_robot_is_refused(folder) -> None:
+    recorded(folder, "g1")
+    with pytest.raises(InputError, match=r"guide\.npz was walked by robot 'g1'.* talos walks"):
+        run("contacts export plan.json problem.json --guide guide.npz --out steps.csv")
+    assert not (folder / "steps.csv").exists()
+
+
+def test_postures_are_of_the_robot_that_walked_the_guide_path(folder, monkeypatch) -> None:
+    run("contacts guide.npz --scene scene.json --planner sampling --out s.json")
+    recorded(folder, "g1")
+    robots = []
+    monkeypatch.setattr(
+        "jaxleas.contacts.sequence.commands.load_robot",
+        lambda name: robots.append(name) or load_robot("talos"),
+    )
+    run("contacts export s.json --scene scene.json --guide guide.npz --out steps.csv")
+    assert robots == ["g1"]
+
+
+def test_options_of_a_terrain_apply_to_the_scene_alone(folder) -> None:
+    with pytest.raises(InputError, match="options of a terrain file were given without --scene"):
+        run("contacts export plan.json problem.json --crop 0 1 0 1 --out steps.csv")
+    run("contacts guide.npz --scene scene.json --planner sampling --out s.json")
+    with pytest.raises(InputError, match=r"--min-area does not apply to scene\.json"):
+        run("contacts export s.json --scene scene.json --min-area 1 --out steps.csv")

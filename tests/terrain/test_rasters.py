@@ -96,6 +96,32 @@ def test_a_plain_tiff_is_heights_or_grey_levels(tmp_path, caplog):
         import_terrain(tmp_path / "grey.tif", resolution=0.1, z_min=1.0)
 
 
+def test_what_gdal_states_is_heeded(tmp_path, caplog):
+    """Scale and offset, the rounded lowest number of float32, masks, and a second band."""
+    levels = np.arange(12, dtype=np.int16).reshape(3, 4)
+    items = ("OFFSET", "offset", 5), ("SCALE", "scale", 0.01)
+    text = "".join(f'<Item name="{n}" sample="0" role="{r}">{v}</Item>' for n, r, v in items)
+    metadata = (42112, "s", 0, f"<GDALMetadata>{text}</GDALMetadata>", True)
+    tifffile.imwrite(tmp_path / "scaled.tif", levels, extratags=[metadata])
+    found = import_terrain(tmp_path / "scaled.tif", resolution=0.1).heights
+    np.testing.assert_allclose(found, 5.0 + 0.01 * levels[::-1], rtol=1e-6)
+    assert "states a scale of 0.01 and an offset of 5" in caplog.text
+    lowest = np.ones((3, 4), np.float32)
+    lowest[0, 0] = np.finfo(np.float32).min
+    void = [(42113, "s", 0, "-3.4028235e+38", True)]
+    tifffile.imwrite(tmp_path / "lowest.tif", lowest, extratags=void)
+    found = import_terrain(tmp_path / "lowest.tif", resolution=0.1).heights
+    np.testing.assert_array_equal(np.isnan(found), lowest[::-1] != 1.0)
+    with tifffile.TiffWriter(tmp_path / "masked.tif") as out:
+        out.write(np.ones((3, 4), np.float32))
+        out.write(levels != 5, subfiletype=4, photometric="minisblack")
+    found = import_terrain(tmp_path / "masked.tif", resolution=0.1).heights
+    np.testing.assert_array_equal(np.isnan(found), levels[::-1] == 5)
+    tifffile.imwrite(tmp_path / "two.tif", np.stack([lowest * 0, lowest], -1), planarconfig=1)
+    import_terrain(tmp_path / "two.tif", resolution=0.1)
+    assert "has 2 bands; the first one is read" in caplog.text
+
+
 @pytest.mark.parametrize(
     "content", [b"", b"II*\0", b"II*\0\10\0\0\0\xff\xff" + bytes(40), b"no image"]
 )

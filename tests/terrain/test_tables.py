@@ -94,3 +94,15 @@ def test_a_table_needs_its_resolution(tmp_path):
     np.save(tmp_path / "map.npy", np.zeros((4, 4), complex))
     with pytest.raises(InputError, match="numbers, truth values and text"):
         import_terrain(tmp_path / "map.npy", resolution=0.1)
+
+
+def test_a_channel_of_one_and_sixteen_bit_text_are_read(tmp_path):
+    heights = np.arange(12.0).reshape(3, 4)
+    for name, array in (("last", heights[..., None]), ("first", heights[None])):
+        np.save(tmp_path / f"{name}.npy", array)
+        found = import_terrain(tmp_path / f"{name}.npy", resolution=0.1).heights
+        np.testing.assert_array_equal(found, heights)
+    text = "\n".join(",".join(map(str, row)) for row in heights.tolist())
+    (tmp_path / "wide.csv").write_bytes(text.encode("utf-16"))
+    found = import_terrain(tmp_path / "wide.csv", resolution=0.1).heights
+    np.testing.assert_array_equal(found, heights)

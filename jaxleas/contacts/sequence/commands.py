@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.contacts.guide_file import Walked, read_walked
 from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
@@ -26,8 +27,8 @@ from jaxleas.contacts.sequence.timing import (
 )
 from jaxleas.contacts.sequence.values import ContactSequence
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.robots import DEFAULT_ROBOT, load_robot
-from jaxleas.terrain import load_scene
+from jaxleas.robots import Walker, load_robot, walker_of
+from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading, Scene, load_scene
 from jaxleas.types import GuidePath, InputError
 
 USUAL_STEP = 1.0
@@ -47,6 +48,8 @@ def export(
     step_time: float | None = None,
     standing: float = 0.2,
     sampling: Sampling = USUAL,
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
 ) -> ContactSequence:
     """Write a contact plan for other programs: footsteps, phases, or a schedule of nodes.
 
@@ -56,27 +59,34 @@ def export(
         out: footsteps (.csv), phases for Crocoddyl and multicontact-api (.json), or a schedule for
             mpx (.npz).
         guide: the guide path, .npz: landings have its times, and a schedule its root.
-        scene: the scene of a plan of sampling, .json or a mesh.
+        scene: the scene of a plan of sampling, .json, a mesh or a map.
         query: number of the path in the guide's file.
-        robot: robot of a plan of sampling, talos by default.
+        robot: robot of a plan of sampling; by default the problem's, or the one that walked the
+            guide path, or talos where no file says.
         step_time: time of each step instead of the guide path's, 1.0 without a guide path [s].
         standing: share of the time of each step in which all effectors stand.
         sampling: how a schedule is sampled.
+        reading: what the scene's file does not state itself.
+        search: what counts as a surface, if the scene is a map.
     """
     require_sequence_name(out)
+    if scene is None and (reading != READING or search.given):
+        raise InputError("options of a terrain file were given without --scene, which they are of")
     made = read_plan(plan)
     steps = 0 if made.footholds is None else len(made.footholds)
     if not steps:
         raise InputError(f"{plan} is '{made.status}' and has no footholds: nothing can be written")
     asked = None if problem is None else read_problem(problem)
-    path = _guide(guide, query)
+    walked = None if guide is None else read_walked(guide, query)
+    path = None if walked is None else walked.guide
+    walker = _walker(walked, robot or (asked.robot if asked else None), guide)
     rows = None if path is None else _rows(made, asked, path)
     raw = _times(steps, rows, path, step_time)
     times = apart(plan, raw)
     if made.postures is not None:
-        surfaces = _surfaces(plan, asked, scene)
-        found = load_robot(robot or (asked.robot if asked else DEFAULT_ROBOT))
-        sequence = sequence_of_postures(made, surfaces, found, times, standing)
+        ground = None if scene is None else load_scene(scene, reading, search)
+        surfaces = _surfaces(plan, asked, ground, scene)
+        sequence = sequence_of_postures(made, surfaces, load_robot(walker.name), times, standing)
     elif asked is None:
         raise InputError(
             f"{plan} is of the {made.planner} planner: say which problem it answers: jaxleas"
@@ -98,10 +108,12 @@ def export(
     return sequence
 
 
-def _guide(guide: Path | None, query: int) -> GuidePath | None:
-    from jaxleas.contacts.guide_file import read_guide_path
-
-    return None if guide is None else read_guide_path(guide, query)
+def _walker(walked: Walked | None, named: str | None, guide: Path | None) -> Walker:
+    """Return the robot of a plan, which must be the one that walked its guide path."""
+    walker = walker_of(None if walked is None else walked.robot, named, guide)
+    if walker.note:
+        print(walker.note)
+    return walker
 
 
 def _rows(plan: ContactPlan, problem: ContactProblem | None, guide: GuidePath) -> list[int]:
@@ -123,11 +135,11 @@ def _times(
 
 
 def _surfaces(
-    plan: Path, problem: ContactProblem | None, scene: Path | None
+    plan: Path, problem: ContactProblem | None, ground: Scene | None, where: Path | None
 ) -> dict[str, ContactSurface]:
-    if scene is not None:
-        surfaces = load_scene(scene).surfaces
-        return {name: make_surface(each, f"{scene}: '{name}'") for name, each in surfaces.items()}
+    if ground is not None:
+        named = ground.surfaces.items()
+        return {name: make_surface(each, f"{where}: '{name}'") for name, each in named}
     if problem is not None:
         return problem.surfaces
     raise InputError(

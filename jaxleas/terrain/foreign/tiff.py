@@ -1,5 +1,6 @@
 """TIFF and GeoTIFF files as heights, by tifffile."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,10 @@ MAX_CELLS = 64_000_000
 _GEOGRAPHIC = 2  # GTModelTypeGeoKey of maps in degrees
 _PLACE = {33550: "ModelPixelScale", 33922: "ModelTiepoint", 34264: "ModelTransformation"}
 """Tags that may stand without keys that say what they mean."""
+_GDAL = {"metadata": 42112, "no data": 42113}
+"""Tags of GDAL, whose values are texts."""
+_MASK = 4
+"""Bit of the kind of an image that says where another one is valid."""
 _FEET = {9002: 0.3048, 9003: 1200.0 / 3937.0}
 """Metres per linear unit, by its EPSG code."""
 
@@ -43,20 +48,52 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
         tags = {name: page.tags[code].value for code, name in _PLACE.items() if code in page.tags}
         tags |= page.geotiff_tags or {}
         values = page.asarray()
-        nodata = page.nodata if 42113 in page.tags else None
+        stated = {
+            name: str(page.tags[code].value) for name, code in _GDAL.items() if code in page.tags
+        }
         bits = int(page.bitspersample)
-        if len(file.pages) > 1:
-            notes.append(f"has {len(file.pages)} images; the first one is read")
+        masks = [each for each in file.pages[1:] if int(each.subfiletype) & _MASK]
+        mask = masks[0].asarray() if masks and masks[0].shape == values.shape[:2] else None
+        if len(file.pages) > 1 + len(masks):
+            notes.append(f"has {len(file.pages) - len(masks)} images; the first one is read")
     if values.ndim == 3:
         values, more = _one_band(values)
         notes.extend(more)
     if values.ndim != 2 or values.dtype.kind not in "fiu":
         raise RefusedError(f"holds {values.dtype} of shape {values.shape}; a map has one band")
-    heights = values.astype(np.float64)
-    if nodata is not None and np.isfinite(nodata):
-        heights[values == np.asarray(nodata).astype(values.dtype)] = np.nan
-    arrays = {"heights": heights[::-1], "whole": values.dtype.kind != "f", "levels": 2.0**bits}
+    heights = _heights(values, stated.get("no data"), mask)
+    scale, offset = _scale(stated.get("metadata", ""))
+    if (scale, offset) != (1.0, 0.0):
+        notes.append(f"states a scale of {scale:g} and an offset of {offset:g}, which are applied")
+        heights = scale * heights + offset
+    whole = values.dtype.kind != "f" and (scale, offset) == (1.0, 0.0)
+    arrays = {"heights": heights[::-1], "whole": whole, "levels": 2.0**bits}
     return Answer(arrays | _place(tags, values.shape), notes)
+
+
+def _heights(values: np.ndarray, no_data: str | None, mask: np.ndarray | None) -> np.ndarray:
+    """Return values as heights, NaN where they are the stated number or lie outside the mask."""
+    heights = values.astype(np.float64)
+    if no_data is not None:
+        number = float(no_data.strip(" \0\n"))
+        if np.isfinite(number):  # in the image's own type, which may have rounded it
+            with np.errstate(over="ignore", invalid="ignore"):
+                heights[values == np.asarray(number).astype(values.dtype)] = np.nan
+    if mask is not None:
+        heights[mask == 0] = np.nan
+    return heights
+
+
+def _scale(metadata: str) -> tuple[float, float]:
+    """Return scale and offset of the first band that GDAL's metadata state; 1 and 0 if none."""
+    found = {"scale": 1.0, "offset": 0.0}
+    for item in re.findall(r"<Item\b([^>]*)>([^<]*)</Item>", metadata):
+        role = re.search(r'\brole="(scale|offset)"', item[0])
+        if role and 'sample="0"' in item[0]:
+            found[role[1]] = float(item[1])
+    if not np.isfinite(list(found.values())).all():
+        raise RefusedError("states a scale or an offset that is no number")
+    return found["scale"], found["offset"]
 
 
 def _one_band(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -65,6 +102,8 @@ def _one_band(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
         values = np.moveaxis(values, 0, -1)
     if values.shape[-1] > 4:
         raise RefusedError(f"has {values.shape[-1]} bands; a map has one")
+    if values.shape[-1] == 2:
+        return values[..., 0], ["has 2 bands; the first one is read"]
     if values.shape[-1] < 3 or all((values[..., k] == values[..., 0]).all() for k in (1, 2)):
         return values[..., 0], []
     return values[..., :3] @ np.array([0.299, 0.587, 0.114]), ["is coloured; its grey is read"]

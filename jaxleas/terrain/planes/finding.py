@@ -64,7 +64,8 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
             continue
         lifted = region.lifted(middle)
         parts = polygons_of(lifted, height_map, inset, PART * search.min_area)
-        parts = without_corners_in_the_air(parts, height_map, max(noise, off))
+        if inset >= 0.5 * cell:  # else the cells around a corner are not the surface's alone
+            parts = without_corners_in_the_air(parts, height_map, max(noise, off))
         if not parts:
             cells[region.box][region.cells] = Cell.SMALL
             continue

@@ -20,7 +20,8 @@ def surfaces_in_words(found: FoundSurfaces) -> str:
     cut = f" in {parts} convex polygons" if parts > count else ""
     return (
         f"{what}{cut}, {found.area:.2f} m2, found in the map; their cells lie"
-        f" {1000.0 * found.root_mean_square:.1f} mm off {them} (RMS); {_left_over(found)}"
+        f" {1000.0 * found.root_mean_square:.1f} mm off {them} (RMS);"
+        f" {_left_over(found)}{_passable(found)}"
     )
 
 
@@ -47,3 +48,12 @@ def _left_over(found: FoundSurfaces) -> str:
         return "no cell is left over"
     total = 100.0 * (1.0 - shares[Cell.SURFACE])
     return f"left over are {total:.1f} % of the cells: {', '.join(named)}"
+
+
+def _passable(found: FoundSurfaces) -> str:
+    """Return the area of ground that is neither surface nor obstacle, as a clause."""
+    shares = found.shares
+    ground = (1.0 - shares[Cell.SURFACE] - shares[Cell.VOID]) * found.cells.size
+    if ground < 0.5:
+        return ""
+    return f"; those {ground * found.resolution**2:.2f} m2 of ground are no obstacles"
