@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.guide_file import Walked, read_walked
+from jaxleas.contacts.guide_file import RecordedGuide, read_recorded_guide
 from jaxleas.contacts.plan import ContactPlan, read_plan
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
@@ -27,7 +27,7 @@ from jaxleas.contacts.sequence.timing import (
 )
 from jaxleas.contacts.sequence.values import ContactSequence
 from jaxleas.contacts.surfaces import ContactSurface, make_surface
-from jaxleas.robots import Walker, load_robot, walker_of
+from jaxleas.robots import PlannedRobot, load_robot, robot_for
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading, Scene, load_scene
 from jaxleas.types import GuidePath, InputError
 
@@ -77,16 +77,16 @@ def export(
     if not steps:
         raise InputError(f"{plan} is '{made.status}' and has no footholds: nothing can be written")
     asked = None if problem is None else read_problem(problem)
-    walked = None if guide is None else read_walked(guide, query)
+    walked = None if guide is None else read_recorded_guide(guide, query)
     path = None if walked is None else walked.guide
-    walker = _walker(walked, robot or (asked.robot if asked else None), guide)
+    planned = _planned_robot(walked, robot or (asked.robot if asked else None), guide)
     rows = None if path is None else _rows(made, asked, path)
     raw = _times(steps, rows, path, step_time)
     times = apart(plan, raw)
     if made.postures is not None:
         ground = None if scene is None else load_scene(scene, reading, search)
         surfaces = _surfaces(plan, asked, ground, scene)
-        sequence = sequence_of_postures(made, surfaces, load_robot(walker.name), times, standing)
+        sequence = sequence_of_postures(made, surfaces, load_robot(planned.name), times, standing)
     elif asked is None:
         raise InputError(
             f"{plan} is of the {made.planner} planner: say which problem it answers: jaxleas"
@@ -108,9 +108,11 @@ def export(
     return sequence
 
 
-def _walker(walked: Walked | None, named: str | None, guide: Path | None) -> Walker:
+def _planned_robot(
+    walked: RecordedGuide | None, named: str | None, guide: Path | None
+) -> PlannedRobot:
     """Return the robot of a plan, which must be the one that walked its guide path."""
-    walker = walker_of(None if walked is None else walked.robot, named, guide)
+    walker = robot_for(None if walked is None else walked.robot, named, guide)
     if walker.note:
         print(walker.note)
     return walker
