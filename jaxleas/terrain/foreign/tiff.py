@@ -52,7 +52,8 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
             name: str(page.tags[code].value) for name, code in _GDAL.items() if code in page.tags
         }
         bits = int(page.bitspersample)
-        masks = [each for each in file.pages[1:] if int(each.subfiletype) & _MASK]
+        others = [each for each in file.pages[1:] if isinstance(each, tifffile.TiffPage)]
+        masks = [each for each in others if int(each.subfiletype) & _MASK]
         mask = masks[0].asarray() if masks and masks[0].shape == values.shape[:2] else None
         if len(file.pages) > 1 + len(masks):
             notes.append(f"has {len(file.pages) - len(masks)} images; the first one is read")
