@@ -25,11 +25,6 @@ SINKING = 0.25
 """Speed at which a foot that should stand is lowered until it touches [m/s]."""
 SLOW = 0.08
 """Speed below which a robot that is to stand stops stepping [m/s]."""
-LEG_INERTIA = 0.9
-"""Mass that a swinging foot seems to have [kg]."""
-TRUNK_INERTIA = np.array([0.95, 1.95, 2.02])
-"""Inertia of the whole robot about its axes [kg m2]."""
-COM_BELOW_ROOT = 0.023
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +87,11 @@ class Trot:
         self._gains = gains
         self._body = body
         self._legs = LegKinematics(body)
-        pairs = ((0, 3), (1, 2))
-        self._offsets = np.array([0.0, 0.5, 0.5, 0.0])
         self._nominal = self._legs.posture(body.standing[None]).feet[0] * np.array([1.0, 1.0, 0.0])
+        # Feet on one diagonal swing together; the others half a cycle later.
+        second = self._nominal[:, 0] * self._nominal[:, 1] < 0.0
+        pairs = tuple(tuple(map(int, np.flatnonzero(second == late))) for late in (False, True))
+        self._offsets = 0.5 * second
         self.identity = ControllerIdentity(
             name=name,
             robot=body.name,
@@ -207,8 +204,8 @@ class Trot:
         wanted = np.where(swings[..., None], target.velocity, lowered)
         pull = gains.swing_stiffness * error
         pull += gains.swing_damping * (wanted - motion.foot_velocities)
-        pull += LEG_INERTIA * np.where(swings[..., None], target.acceleration, 0.0)
-        pull[..., 2] += LEG_INERTIA * GRAVITY
+        pull += gains.swing_mass * np.where(swings[..., None], target.acceleration, 0.0)
+        pull[..., 2] += gains.swing_mass * GRAVITY
         return pull
 
     def _stance(
@@ -237,8 +234,8 @@ class Trot:
         turn[:, 0] = -gains.tilt * roll - gains.tilt_rate * rate[:, 0]
         turn[:, 1] = -gains.tilt * pitch - gains.tilt_rate * rate[:, 1]
         turn[:, 2] = gains.turning * (command[:, 2] - rate[:, 2])
-        wrench = np.concatenate([mass * pull, TRUNK_INERTIA * turn], axis=1)
-        com = state.position - COM_BELOW_ROOT * rotation[:, :, 2]
+        wrench = np.concatenate([mass * pull, self._body.inertia * turn], axis=1)
+        com = state.position + rotation @ self._body.com
         arms = (motion.feet - com[:, None]) @ motion.level
         forces = ground_forces(wrench, arms, stands, self.settings.friction)
         return forces @ np.swapaxes(motion.level, 1, 2)

@@ -62,6 +62,7 @@ class TrotGains:
         turning: angular acceleration per error of the turning rate [1/s].
         swing_stiffness: force on a swinging foot per error of its place [N/m].
         swing_damping: force on a swinging foot per error of its velocity [N s/m].
+        swing_mass: mass that a swinging foot seems to have, the leg's behind it [kg].
     """
 
     height: float = 120.0
@@ -72,6 +73,7 @@ class TrotGains:
     turning: float = 15.0
     swing_stiffness: float = 2500.0
     swing_damping: float = 70.0
+    swing_mass: float = 0.9
 
 
 TROT, GAINS = TrotSettings(), TrotGains()

@@ -48,6 +48,9 @@ class Body:
         standing: angles of all joints in which it stands [rad].
         standing_height: height of the root above level ground then [m].
         mass: mass of the whole robot [kg].
+        com: its centre of mass in the root frame where it stands [m].
+        inertia: its moments of inertia about axes through that point, parallel to the root's
+            [kg m2].
         foot_radius: radius of the feet, which are balls [m].
         largest_torque: largest torque of each joint [Nm].
         time_step: duration of a physics step [s].
@@ -59,6 +62,8 @@ class Body:
     standing: Float[np.ndarray, " J"]
     standing_height: float
     mass: float
+    com: Float[np.ndarray, "3"]
+    inertia: Float[np.ndarray, "3"]
     foot_radius: float
     largest_torque: Float[np.ndarray, " J"]
     time_step: float
@@ -128,6 +133,7 @@ def _read(name: str, mjcf: str, where: str) -> Body:
     legs = tuple(
         _leg(model, index, where) for index in range(model.nsite) if _is_foot(model, index)
     )
+    com, inertia = _com_and_inertia(model, key)
     body = Body(
         name=name,
         mjcf=mjcf,
@@ -135,6 +141,8 @@ def _read(name: str, mjcf: str, where: str) -> Body:
         standing=model.key_qpos[key, FREE_JOINT:].copy(),
         standing_height=float(model.key_qpos[key, 2]),
         mass=float(mujoco.mj_getTotalmass(model)),
+        com=com,
+        inertia=inertia,
         foot_radius=_foot_radius(model, legs, where),
         largest_torque=model.actuator_ctrlrange[:, 1].copy(),
         time_step=float(model.opt.timestep),
@@ -146,6 +154,22 @@ def _read(name: str, mjcf: str, where: str) -> Body:
             f" same order, {', '.join(body.joints)}; its motors drive {', '.join(driven)}"
         )
     return body
+
+
+def _com_and_inertia(model: Any, key: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the centre of mass in the root frame, and the moments of inertia about it."""
+    mujoco = import_mujoco()
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, key)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    masses, places = model.body_mass[:, None], data.xipos
+    com = (masses * places).sum(axis=0) / masses.sum()
+    axes = data.ximat.reshape(-1, 3, 3)  # of each link's principal inertia
+    own = (axes**2 * model.body_inertia[:, None, :]).sum(axis=(0, 2))
+    arms = (places - com) ** 2
+    moved = (masses * (arms.sum(axis=1, keepdims=True) - arms)).sum(axis=0)
+    return com - model.key_qpos[key, :3], own + moved
 
 
 def _is_foot(model: Any, site: int) -> bool:

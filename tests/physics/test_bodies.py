@@ -86,6 +86,12 @@ def test_a_body_knows_its_legs() -> None:
     assert body.feet == ("LF", "RF", "LH", "RH")
     assert body.joints[:3] == ("LF_HAA", "LF_HFE", "LF_KFE")
     assert body.mass == pytest.approx(30.4754, abs=1e-4)
+    model = import_mujoco().MjModel.from_xml_path(str(SHIPPED))
+    standing = import_mujoco().MjData(model)
+    import_mujoco().mj_resetDataKeyframe(model, standing, 0)
+    import_mujoco().mj_forward(model, standing)
+    np.testing.assert_allclose(body.com, standing.subtree_com[1] - standing.qpos[:3], atol=1e-9)
+    np.testing.assert_allclose(body.inertia, np.diag(inertia_about_com(model, standing)))
     assert body.foot_radius == 0.031
     assert body.largest_torque.tolist() == [80.0] * 12
 
