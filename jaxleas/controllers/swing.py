@@ -5,6 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+RISES_FIRST = 0.2
+"""Share of a swing in which a foot only rises: one that stands before an edge gets over it."""
+
 
 @dataclass(frozen=True, eq=False)
 class FootTarget:
@@ -30,8 +33,8 @@ def swing_target(
 ) -> FootTarget:
     """Return where feet are to be on their way from lift-off to touchdown.
 
-    They move by the quintic that begins and ends at rest, s^3 (10 - 15 s + 6 s^2), and rise above
-    the line between its ends by the apex times 64 s^3 (1 - s)^3, half of the way.
+    They rise above the line between its ends by the apex times 64 s^3 (1 - s)^3, and move along it
+    by the quintic that begins and ends at rest, s^3 (10 - 15 s + 6 s^2), whose s begins later.
 
     Args:
         lift_off: where the feet left the ground [m].
@@ -42,9 +45,11 @@ def swing_target(
     """
     s = progress[..., None]
     rest = 1.0 - s
-    way = s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
-    speed = 30.0 * (s * rest) ** 2 / duration
-    push = 60.0 * s * rest * (1.0 - 2.0 * s) / duration**2
+    ahead = np.maximum(s - RISES_FIRST, 0.0) / (1.0 - RISES_FIRST)
+    lasts = (1.0 - RISES_FIRST) * duration
+    way = ahead**3 * (10.0 - 15.0 * ahead + 6.0 * ahead * ahead)
+    speed = 30.0 * (ahead * (1.0 - ahead)) ** 2 / lasts
+    push = 60.0 * ahead * (1.0 - ahead) * (1.0 - 2.0 * ahead) / lasts**2
     product = s * rest
     rise = 64.0 * apex * product**3
     rising = 192.0 * apex * product**2 * (1.0 - 2.0 * s) / duration

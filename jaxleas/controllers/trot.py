@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float
 
 from jaxleas.controllers.clock import Schedule, schedule
 from jaxleas.controllers.controller import JointCommand
+from jaxleas.controllers.ground import GroundPlane
 from jaxleas.controllers.legs import LegKinematics, LegPosture, cross
 from jaxleas.controllers.stance import ground_forces
 from jaxleas.controllers.swing import FootTarget, swing_target
@@ -21,8 +22,12 @@ TOUCHES = 5.0
 """Force from which on a foot is on the ground [N]."""
 EARLY = 0.5
 """Share of the swing from which on a touch ends it."""
-SINKING = 0.25
+SINKING = 0.5
 """Speed at which a foot that should stand is lowered until it touches [m/s]."""
+DEEP = 0.12
+"""Depth under the ground expected from which on a foot is no longer waited for [m]."""
+WAITING = 0.2
+"""Pace of the clock while all feet should stand and one still falls."""
 SLOW = 0.08
 """Speed below which a robot that is to stand stops stepping [m/s]."""
 
@@ -125,13 +130,15 @@ class Trot:
         begins = planned.swings & ~memory.swung
         lift_off = np.where(begins[..., None], motion.feet, memory.lift_off)
         footholds = np.where(stands[..., None], motion.feet, memory.footholds)
-        target = self._target(state, motion, planned, lift_off, footholds, command)
-        forces = self._stance(state, motion, stands, footholds, command)
+        ground = GroundPlane.through(footholds)
+        target = self._target(state, motion, planned, lift_off, ground, command)
+        forces = self._stance(state, motion, stands, ground, command)
         forces = np.where(stands[..., None], -forces, self._pull(motion, target, swings))
-        remembered = TrotMemory(
-            self._next_phase(memory.phase, state, planned, command),
-            *(footholds, lift_off, planned.swings),
-        )
+        falling = ~touching & (motion.feet[..., 2] > ground.height_at(motion.feet[..., :2]) - DEEP)
+        pace = np.where(planned.all_stand & falling.any(axis=1), WAITING, 1.0)
+        pace = np.where(planned.all_stand & self._rests(state, command), 0.0, pace)
+        phase = (memory.phase + pace * PERIOD / self.settings.cycle) % 1.0
+        remembered = TrotMemory(phase, footholds, lift_off, planned.swings)
         torques = _torques(motion, forces)
         return remembered, JointCommand(torques, state.angles)
 
@@ -164,7 +171,7 @@ class Trot:
         motion: _Motion,
         planned: Schedule,
         lift_off: np.ndarray,
-        footholds: np.ndarray,
+        ground: GroundPlane,
         command: np.ndarray,
     ) -> FootTarget:
         """Return where swinging feet are to be."""
@@ -185,7 +192,7 @@ class Trot:
         places = places + ahead[:, None]
         touchdown = places @ np.swapaxes(motion.level, 1, 2)
         touchdown[..., :2] += state.position[:, None, :2]
-        touchdown[..., 2] = footholds[..., 2].mean(axis=1, keepdims=True)
+        touchdown[..., 2] = ground.height_at(touchdown[..., :2])
         return swing_target(
             lift_off, touchdown, planned.progress, settings.swing_time, settings.swing_height
         )
@@ -213,21 +220,21 @@ class Trot:
         state: BodyState,
         motion: _Motion,
         stands: np.ndarray,
-        footholds: np.ndarray,
+        ground: GroundPlane,
         command: np.ndarray,
     ) -> np.ndarray:
         """Return the forces of the ground on standing feet [N]."""
         gains, mass = self._gains, self._body.mass
         velocity = (np.swapaxes(motion.level, 1, 2) @ state.velocity[..., None])[..., 0]
-        ground = footholds[..., 2].mean(axis=1)
+        root = state.position[:, None, :2]
         pull = np.empty_like(velocity)
         pull[:, :2] = gains.speed * (command[:, :2] - velocity[:, :2])
-        below = ground + self.settings.height - state.position[:, 2]
+        below = ground.height_at(root)[:, 0] + self.settings.height - state.position[:, 2]
         pull[:, 2] = gains.height * below - gains.climb * velocity[:, 2] + GRAVITY
         rotation = motion.rotation
         # The root's vertical axis, seen from the heading: its tilt is roll and pitch.
         axis = (np.swapaxes(motion.level, 1, 2) @ rotation[:, :, 2:])[..., 0]
-        slope = self._slope(motion, footholds)
+        slope = -np.arctan((ground.gradient[:, None] @ motion.level[:, :2, :1])[:, 0, 0])
         roll, pitch = -axis[:, 1], axis[:, 0] - slope
         rate = (np.swapaxes(motion.level, 1, 2) @ rotation @ state.turning_rate[..., None])[..., 0]
         turn = np.empty_like(velocity)
@@ -240,20 +247,10 @@ class Trot:
         forces = ground_forces(wrench, arms, stands, self.settings.friction)
         return forces @ np.swapaxes(motion.level, 1, 2)
 
-    def _slope(self, motion: _Motion, footholds: np.ndarray) -> np.ndarray:
-        """Return the pitch of the ground under the feet, positive downhill ahead [rad]."""
-        places = footholds @ motion.level
-        front = self._nominal[:, 0] > 0.0
-        ahead, behind = places[:, front].mean(axis=1), places[:, ~front].mean(axis=1)
-        return np.arctan2(behind[:, 2] - ahead[:, 2], np.maximum(ahead[:, 0] - behind[:, 0], 0.1))
-
-    def _next_phase(
-        self, phase: np.ndarray, state: BodyState, planned: Schedule, command: np.ndarray
-    ) -> np.ndarray:
-        """Return the phase at the next decision; the clock of a robot that is to stand stops."""
+    def _rests(self, state: BodyState, command: np.ndarray) -> np.ndarray:
+        """Return which robots are to stand, and are slow enough to do so."""
         slow = (np.abs(state.velocity) < SLOW).all(axis=1)
-        rests = (command == 0.0).all(axis=1) & slow & planned.all_stand
-        return np.where(rests, phase, (phase + self.period / self.settings.cycle) % 1.0)
+        return (command == 0.0).all(axis=1) & slow
 
 
 def _torques(motion: _Motion, forces: np.ndarray) -> np.ndarray:

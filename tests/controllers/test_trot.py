@@ -1,5 +1,6 @@
 """The trot: it goes where it is told, on one robot as in a batch, and stands when told to."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from jaxleas.controllers import (
     find_controller,
 )
 from jaxleas.physics import Sensed, Variation, load_body, make_physics, standing
+from jaxleas.terrain import Scene
 
 BODY = load_body("anymal_b")
 COMMANDS = np.array(
@@ -109,6 +111,25 @@ def test_a_robot_told_to_stop_stands_and_steps_no_more() -> None:
         walking = walk.tick(walking, np.zeros((1, 3))).walking
         assert (walking.sensed.forces > 10.0).all()
     np.testing.assert_allclose(walking.sensed.feet, before.feet, atol=0.005)
+
+
+@pytest.mark.parametrize("name", ["trot", "trot_high"])
+def test_trots_climb_the_first_stairs_of_the_thesis_without_seeing_them(name: str) -> None:
+    """Risers of 4.2 cm on treads of a third of a metre (section 5.2): three steps up."""
+    edges = np.array([-2.0, 1.0, 4.0 / 3.0, 5.0 / 3.0, 6.0])
+    steps = {
+        f"step {index}": np.array(
+            [[x, y, 0.042 * index] for x, y in ((a, -1.0), (b, -1.0), (b, 1.0), (a, 1.0))]
+        )
+        for index, (a, b) in enumerate(itertools.pairwise(edges))
+    }
+    walk = Walk(make_physics(BODY, 3, Scene(steps)), find_controller(name, BODY))
+    walking = walk.begin(standing(BODY, np.array([[0.5, 0.0, 0.0], [0.55, 0, 0], [0.6, 0, 0]])))
+    for _ in range(1500):
+        walking = walk.tick(walking, np.array([[0.5, 0.0, 0.0]] * 3)).walking
+    assert (falls(BODY, walking.state, walking.sensed) == UPRIGHT).all()
+    assert (walking.state.position[:, 0] > 2.4).all()
+    assert (walking.sensed.feet[..., 2] > 3 * 0.042).all()
 
 
 def test_noise_is_drawn_from_the_seed() -> None:
