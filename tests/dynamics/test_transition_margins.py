@@ -58,15 +58,20 @@ def test_agrees_with_the_definition(transitions, solver):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "where",
+    ("solver", "where"),
     [
-        EVERYWHERE,
-        Discretisation(degree=6, instants=3),
-        Discretisation(degree=6, kind="everywhere"),
-        Discretisation(instants=2, generators=6),
+        ("compiled", EVERYWHERE),
+        ("compiled", Discretisation(degree=6, instants=3)),
+        ("compiled", Discretisation(degree=6, kind="everywhere")),
+        ("compiled", Discretisation(instants=2, generators=6)),
+        # Each is a program of its own for XLA, which takes longer to compile than all the rest.
+        ("jax", EVERYWHERE),
+        ("jax", Discretisation(degree=6, instants=3)),
     ],
 )
 def test_agrees_with_the_definition_wherever_it_is_checked(transitions, solver, where):
+    if solver == "compiled":
+        pytest.importorskip("numba")
     found = solve_transitions(transitions, where, solver)
     assert (found.ended == Ended.CONVERGED).all()
     np.testing.assert_allclose(found.margin, margins_by_definition(transitions, where), atol=KNOWN)
