@@ -136,7 +136,7 @@ LOAD_NO_CODE = {
         "contacts export",
         "label",
     ),  # a planner is named on the command line itself
-    *("runs", "compare", "gait fit"),  # plain values
+    *("runs", "compare", "gait fit", "gait plan", "transition check"),  # plain values
 }
 
 

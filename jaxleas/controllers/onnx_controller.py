@@ -107,4 +107,4 @@ class OnnxController:
 
 
 def _reason(error: Exception) -> str:
-    return str(error).partition("\n")[0]
+    return (str(error) or type(error).__name__).splitlines()[0]
