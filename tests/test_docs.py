@@ -275,4 +275,5 @@ def test_every_metric_is_documented(tmp_path, brax_ranks) -> None:
     logged = {name for row in read_metrics(run.metrics) for name in row}
     assert not {name for name in logged - exact if not name.startswith(families)}
     stated = {name for name in exact if name.startswith(("walk/", "learn/", "held_out/"))}
-    assert not stated - logged, "metrics that do not exist"
+    by_kind = {"held_out/worst"}  # logged where `terrain.examined` is `all`, which this run is not
+    assert not stated - logged - by_kind, "metrics that do not exist"

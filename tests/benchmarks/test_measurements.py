@@ -98,7 +98,7 @@ def test_verdicts_follow_the_direction():
 def test_names_are_unique_and_say_what_they_are():
     names = [metric.name for workload in WORKLOADS for metric in workload.metrics]
     assert len(names) == len(set(names))
-    assert all(name.startswith(("env_", "ppo_", "learn_", "export_")) for name in names)
+    assert all(name.startswith(("env_", "ppo_", "learn_", "export_", "walk_")) for name in names)
 
 
 def test_choosing():

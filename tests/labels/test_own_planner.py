@@ -82,11 +82,11 @@ def test_it_labels_and_its_labels_are_read(here) -> None:
     assert provenance["planner"] == NAME
     assert provenance["parameters"] == {"keep_every": 4, "furthest": 1.21}
     labels = read_labels([here / "labels"], [here], 0.1)
-    assert (labels.planner, len(labels.walks)) == (NAME, 5)
+    assert (labels.planner, len(labels.paths)) == (NAME, 5)
     for number, (path, last) in enumerate(zip(PATHS, expected(1.21), strict=True)):
         reached = sum(index <= last for index in range(0, len(path), 4))
         whole = last == len(path) - 1
-        assert labels.walks.failed_at[number] == (-1 if whole else reached)
+        assert labels.paths.failed_at[number] == (-1 if whole else reached)
 
 
 def test_changed_code_or_settings_are_not_mixed_in(here) -> None:
