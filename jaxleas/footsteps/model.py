@@ -23,8 +23,8 @@ class Errors:
     """Errors on runs that a model has not seen.
 
     Attributes:
-        landing: by quantile ("0.5", "0.95", "0.99"): distance between the predicted and the actual
-            place of a swinging foot [m].
+        landing: quantiles ("0.5", "0.95", "0.99") of the distance between the predicted and the
+            actual place of a swinging foot [m].
         com: the same of the centre of mass, in the plane [m].
         yaw: the same of the heading [rad].
     """
@@ -42,9 +42,10 @@ class MotionModel:
         controller: identity of the controller whose footsteps are predicted.
         predictors: choice of predictors that the models see.
         feet: how landings are predicted.
-        weights: by pair: from all predictors and 1 to displacement of the centre of mass (x, y,
-            yaw), its velocity afterwards (x, y, z, yaw rate) and x, y of each swinging foot.
-        fastest: by movement, the largest speed in the data [m/s or rad/s].
+        weights: weights of each pair, from all predictors and 1 to displacement of the centre of
+            mass (x, y, yaw), its velocity afterwards (x, y, z, yaw rate) and x, y of each swinging
+            foot.
+        fastest: largest speed of each movement in the data [m/s or rad/s].
         longest_stride: largest displacement of the centre of mass in the data [m].
         largest_turn: largest change of the heading in the data [rad].
         errors: errors on unseen runs.

@@ -25,19 +25,20 @@ from jaxleas.dynamics.croc.layout import (
 from jaxleas.dynamics.croc.newton import direction, factorise, gram, inverse_factor
 from jaxleas.dynamics.croc.program import Programs
 from jaxleas.dynamics.croc.solution import (
+    BOLD,
+    CAUTIOUS,
     CLOSE,
     MOST_ITERATIONS,
     NARROWEST,
+    NEAR,
     RESIDUAL,
+    ROOM,
     TOLERANCE,
+    WORSE,
     Ended,
     Solutions,
 )
 
-_ROOM = 0.3  # distance of the first margin from the smallest slack [1]
-_CAUTIOUS, _BOLD = 0.99, 0.999  # share of the way to the boundary: at first, and near the end
-_WORSE = 100.0  # a step that makes the gap this many times as large broke down: it is not taken
-_NEAR = 1e-2  # gap from which on steps are bold
 _LEAST_RATIO = 1e-30
 
 
@@ -107,7 +108,7 @@ def _start(layout: Layout) -> tuple[_Iterate, Bool[jax.Array, " N"]]:
     forces = layout.pulled_back(jnp.einsum("nski,nskj,nswj->nswi", factor, factor, needed))
     x, zero = jnp.zeros_like(p.origin), jnp.zeros_like(p.origin[:, 0])
     force, *others = combined(jnp.negative, layout.slacks(x, zero, forces))
-    margin = -largest_of((jnp.where(layout.standing, force, -jnp.inf), *others)) - _ROOM
+    margin = -largest_of((jnp.where(layout.standing, force, -jnp.inf), *others)) - ROOM
     slacks = layout.slacks(x, margin, forces)
     inverse = layout.masked(combined(lambda s: 1.0 / s, slacks))
     centre = 1.0 / sum_of(inverse)
@@ -170,14 +171,14 @@ def _length(ratio: jax.Array, share: jax.Array | float) -> jax.Array:
 
 def _moved(layout: Layout, state: _Iterate, inverse: Slacks, step: _Step) -> _Iterate:
     """Return the iterate after a step; programs that are done, or would break, stay."""
-    share = jnp.where(state.gap < _NEAR, _BOLD, _CAUTIOUS)
+    share = jnp.where(state.gap < NEAR, BOLD, CAUTIOUS)
     primal = _length(largest_of(combined(lambda s, i: -s * i, step.slacks, inverse)), share)
     ratio = combined(lambda dz, z: -dz / jnp.where(z > 0.0, z, 1.0), step.duals, state.duals)
     dual = _length(largest_of(ratio), share)
     slacks = combined(lambda s, d: s + spread(primal, s) * d, state.slacks, step.slacks)
     duals = combined(lambda z, d: z + spread(dual, z) * d, state.duals, step.duals)
     gap = sum_of(layout.masked(combined(jnp.multiply, slacks, duals)))
-    is_broken = ~(gap < _WORSE * jnp.maximum(state.gap, _NEAR))
+    is_broken = ~(gap < WORSE * jnp.maximum(state.gap, NEAR))
     going = ~(state.done | is_broken)
 
     def kept(new: jax.Array, old: jax.Array) -> jax.Array:

@@ -16,18 +16,19 @@ from jaxleas.dynamics.croc.kernel_matrices import (
 )
 from jaxleas.dynamics.croc.kernel_newton import Newton, Problem, factorise, find_direction
 from jaxleas.dynamics.croc.solution import (
+    BOLD,
+    CAUTIOUS,
     CLOSE,
     MOST_ITERATIONS,
     NARROWEST,
+    NEAR,
     RESIDUAL,
+    ROOM,
     TOLERANCE,
+    WORSE,
     Ended,
 )
 
-_ROOM = 0.3  # distance of the first margin from the smallest slack [1]
-_CAUTIOUS, _BOLD = 0.99, 0.999  # share of the way to the boundary: at first, and near the end
-_WORSE = 100.0  # a step that makes the gap this many times as large broke down: it is not taken
-_NEAR = 1e-2  # gap from which on steps are bold
 _CONVERGED = int(Ended.CONVERGED)
 _NOT_CONVERGED = int(Ended.NOT_CONVERGED)
 _UNSUPPORTED = int(Ended.UNSUPPORTED)
@@ -76,7 +77,7 @@ def solve(problem: Problem, newton: Newton, state: State) -> tuple[int, int]:
         _change(problem, newton.step, newton.force_steps, state.change)
         next_gap = _advance(newton, state, gap)
         iterations += 1
-        if not next_gap < _WORSE * max(gap, _NEAR):
+        if not next_gap < WORSE * max(gap, NEAR):
             break
         gap = next_gap
     error = _weigh(problem, state)
@@ -117,7 +118,7 @@ def _begin(problem: Problem, newton: Newton, state: State) -> bool:
     for i in range(len(state.slack)):
         if state.target[i] > 0.0:
             least = min(least, state.slack[i])
-    state.x[3] = least - _ROOM
+    state.x[3] = least - ROOM
     total = 0.0
     for i in range(len(state.slack)):
         if state.target[i] > 0.0:
@@ -240,14 +241,14 @@ def _advance(newton: Newton, state: State, gap: float) -> float:
         state.dual_change[i] = moved
         primal = max(primal, -state.change[i] * state.inverse[i])
         dual = max(dual, -moved / (z if z > 0.0 else 1.0))
-    share = _BOLD if gap < _NEAR else _CAUTIOUS
+    share = BOLD if gap < NEAR else CAUTIOUS
     primal, dual = share / max(share, primal), share / max(share, dual)
     left = 0.0
     for i in range(len(state.slack)):
         state.slack[i] += primal * state.change[i]
         state.dual[i] += dual * state.dual_change[i]
         left += state.slack[i] * state.dual[i]
-    if left < _WORSE * max(gap, _NEAR):
+    if left < WORSE * max(gap, NEAR):
         for i in range(4):
             state.x[i] += primal * newton.step[i]
         forces, steps = state.forces.reshape(-1), newton.force_steps.reshape(-1)

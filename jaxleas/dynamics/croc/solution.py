@@ -14,6 +14,10 @@ MOST_ITERATIONS = 40
 RESIDUAL = 1e-5  # largest error of the balance of forces [body weights, body weights m]
 PROXIMAL = 1e-7  # weight that keeps forces near where they are, where nothing else holds them
 NARROWEST = 1e-8  # least pivot of a support's wrenches [m^2]: 0.1 mm wide at least
+ROOM = 0.3  # distance of the first margin from the smallest slack [1]
+CAUTIOUS, BOLD = 0.99, 0.999  # share of the way to the boundary: at first, and near the end
+WORSE = 100.0  # a step that makes the gap this many times as large broke down: it is not taken
+NEAR = 1e-2  # gap from which on steps are bold
 
 
 class Ended(IntEnum):
