@@ -1,11 +1,13 @@
 """One file, one truth: a mesh's scene and its height map must show the same ground."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.terrain.areas import bounds
 from jaxleas.terrain.rasterise import DEFAULT_RESOLUTION, rasterise_polygons
 from jaxleas.terrain.scene import Scene
 from jaxleas.types import InputError, is_ground
@@ -29,11 +31,13 @@ class Agreement:
         differing: fraction of the ground that the scene lacks, or shows lower.
         place: x and y of such a place [m].
         mean_gap: mean height of the map above the scene, of which 3 cm count at most [m].
+        largest_gap: the largest such height [m].
     """
 
     differing: float
     place: tuple[float, float]
     mean_gap: float
+    largest_gap: float
 
 
 def compare(triangles: Float[np.ndarray, "N 3 3"], scene: Scene) -> Agreement:
@@ -43,12 +47,12 @@ def compare(triangles: Float[np.ndarray, "N 3 3"], scene: Scene) -> Agreement:
         triangles: triangles of the mesh [m].
         scene: scene made of them.
     """
-    across = np.ptp(triangles[..., :2].reshape(-1, 2), axis=0).max()
+    low, high = bounds(triangles)
+    across = (high - low)[:2].max()
     resolution = min(max(DEFAULT_RESOLUTION, float(across) / _CELLS_ACROSS), 0.5)
     # A triangle without area keeps both maps in one frame.
-    low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     frame = np.array([low, high, high])
-    ground = _heights([*triangles, frame], resolution)
+    ground = _heights(np.concatenate([triangles, frame[None]]), resolution)
     seen = _heights([*scene.surfaces.values(), *scene.obstacles.values(), frame], resolution)
     some = is_ground(ground)
     gap = np.where(is_ground(seen), np.clip(ground - seen, 0.0, SAME), SAME)[some]
@@ -57,7 +61,8 @@ def compare(triangles: Float[np.ndarray, "N 3 3"], scene: Scene) -> Agreement:
     row, column = places[len(places) // 2] if len(places) else (0, 0)
     x, y = (np.floor(low[:2] / resolution) + 0.5 + [column, row]) * resolution
     count = max(int(some.sum()), 1)
-    return Agreement(differs.sum() / count, (float(x), float(y)), float(gap.sum()) / count)
+    mean, largest = float(gap.sum()) / count, float(gap.max(initial=0.0))
+    return Agreement(differs.sum() / count, (float(x), float(y)), mean, largest)
 
 
 def require_agreement(path: str | Path, found: Agreement) -> None:
@@ -79,5 +84,7 @@ def require_agreement(path: str | Path, found: Agreement) -> None:
         )
 
 
-def _heights(polygons: list[np.ndarray], resolution: float) -> Float[np.ndarray, "R C"]:
+def _heights(
+    polygons: Sequence[np.ndarray] | np.ndarray, resolution: float
+) -> Float[np.ndarray, "R C"]:
     return rasterise_polygons(polygons, resolution, 0.0, _GROW).heights

@@ -1,5 +1,7 @@
 """Areas of many polygons at once."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -16,6 +18,18 @@ def area_vectors(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "N 3
         edges = some[:, 1:] - some[:, :1]
         areas[start : start + _BATCH] = 0.5 * np.cross(edges[:, :-1], edges[:, 1:]).sum(axis=1)
     return areas
+
+
+def area_vectors_of(polygons: Sequence[Float[np.ndarray, "V 3"]]) -> Float[np.ndarray, "N 3"]:
+    """Return Newell's vectors of polygons with any numbers of corners [m^2]."""
+    if not len(polygons):
+        return np.zeros((0, 3))
+    counts = np.array([len(each) for each in polygons])
+    corners = np.concatenate(polygons)
+    begin = np.cumsum(counts) - counts
+    rest = corners - np.repeat(corners[begin], counts, axis=0)
+    after = np.roll(rest, -1, axis=0)  # of a last corner: the next one's first, which is zero
+    return 0.5 * np.add.reduceat(np.cross(rest, after), begin)
 
 
 def are_level(areas: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"]:

@@ -11,6 +11,8 @@ from jaxtyping import Bool, Float, Int
 
 WELD = 1e-5
 """Distance below which vertices are merged [m]."""
+_MIXED = np.array([1, 2_654_435_761_123, 40_503_001_777_211])
+"""Multiples of coordinates whose sum, past the largest integer, tells points apart."""
 
 
 def welded(
@@ -18,11 +20,26 @@ def welded(
 ) -> tuple[Float[np.ndarray, "P 3"], Int[np.ndarray, "N 3"]]:
     """Return the vertices of triangles, each once, and the triangles that keep three of them."""
     corners = triangles.reshape(-1, 3)
-    _, first, index = np.unique(
-        np.round(corners / WELD).astype(np.int64), axis=0, return_index=True, return_inverse=True
-    )
+    first, index = _distinct(np.round(corners / WELD).astype(np.int64))
     faces = index.reshape(-1, 3)
-    return corners[first], faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2])
+    whole &= faces[:, 2] != faces[:, 0]
+    return corners[first], faces[whole]
+
+
+def _distinct(
+    points: Int[np.ndarray, "C 3"],
+) -> tuple[Int[np.ndarray, " P"], Int[np.ndarray, " C"]]:
+    """Return where each different point comes first, and which of these each point is."""
+    with np.errstate(over="ignore"):
+        key = points @ _MIXED
+    _, first, index = np.unique(key, return_index=True, return_inverse=True)
+    if not np.array_equal(points[first[index]], points):  # two points with the same key
+        _, first, index = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)  # as in the file: neighbours lie near each other in memory
+    number = np.empty(len(order), np.int32)
+    number[order] = np.arange(len(order))
+    return first[order], number[index.reshape(-1)]
 
 
 @dataclass(frozen=True)

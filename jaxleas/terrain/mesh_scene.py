@@ -2,28 +2,31 @@
 
 import logging
 from dataclasses import replace
-from itertools import compress
+from itertools import chain, compress
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.terrain.agreement import compare, require_agreement
-from jaxleas.terrain.areas import area_vectors
+from jaxleas.terrain.areas import area_vectors, area_vectors_of
 from jaxleas.terrain.bodies import orient
+from jaxleas.terrain.coplanar import merged
 from jaxleas.terrain.cropping import cropped_scene
-from jaxleas.terrain.merging import merged
 from jaxleas.terrain.mesh_edges import welded
 from jaxleas.terrain.meshes import read_triangles
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.polygons import MIN_AREA, STANDING_SLOPE, VERTICAL_SLOPE
-from jaxleas.terrain.rasterise import padded_polygons
 from jaxleas.terrain.reading import READING, Reading, Up
 from jaxleas.terrain.scene import Scene, read_scene
 from jaxleas.terrain.shaping import require_rectangle
 from jaxleas.types import InputError
 
 _LOG = logging.getLogger("jaxleas")
+MAX_POLYGONS = 500_000
+"""Largest number of polygons of a mesh's scene: about as many as fit in a file that is read."""
+SEEN_WHOLE = 1e-3
+"""Height of the map above the scene up to which no face can be wound the wrong way round [m]."""
 
 
 def mesh_to_scene(
@@ -34,8 +37,8 @@ def mesh_to_scene(
 ) -> Scene:
     """Return a mesh as a scene of convex polygons; faces that point down are left out.
 
-    Closed bodies are wound outwards first. Neighbours whose union is planar and convex are merged
-    greedily into one polygon; the others stay triangles.
+    Closed bodies are wound outwards if the scene lacks ground otherwise. Neighbours whose union is
+    planar and convex are merged greedily into one polygon; the others stay triangles.
 
     Args:
         path: path of a mesh.
@@ -51,11 +54,11 @@ def mesh_to_scene(
     reading = replace(reading, **{name: each for name, each in stated.items() if each is not None})
     triangles = read_triangles(path, reading)
     points, faces = welded(triangles)
-    scene = _scene(points, faces)
+    scene = _scene(points, faces, str(path))
     found = compare(triangles, scene)
-    oriented = orient(points, faces)
-    if oriented.turned:
-        turned = _scene(points, oriented.faces)
+    oriented = orient(points, faces) if found.largest_gap > SEEN_WHOLE else None
+    if oriented is not None and oriented.turned:
+        turned = _scene(points, oriented.faces, str(path))
         after = compare(triangles, turned)
         if after.mean_gap < found.mean_gap:  # bodies that pierce each other can mislead
             scene, found = turned, after
@@ -69,14 +72,20 @@ def mesh_to_scene(
     return scene if reading.crop is None else cropped_scene(scene, reading.crop, str(path))
 
 
-def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"]) -> Scene:
+def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"], where: str) -> Scene:
     """Return the faces that look up or sideways, merged: surfaces to stand on, and obstacles."""
-    surfaces, obstacles = {}, {}
-    polygons = merged(points, faces)
-    area = area_vectors(padded_polygons(polygons))
+    found = merged(points, faces)
+    area = np.concatenate([area_vectors_of(found.polygons), area_vectors(found.triangles)])
     size = np.linalg.norm(area, axis=1)
     upward = area[:, 2] / np.maximum(size, 1e-12)
     kept = (size >= MIN_AREA) & (upward >= -VERTICAL_SLOPE)
+    if kept.sum() > MAX_POLYGONS:
+        raise InputError(
+            f"{where} makes {kept.sum()} polygons, more than the {MAX_POLYGONS} of a scene: import"
+            " it as a height map, in which surfaces are found; or give --crop, or decimate it"
+        )
+    surfaces, obstacles = {}, {}
+    polygons = chain(found.polygons, found.triangles)
     for vertices, slope in zip(compress(polygons, kept), upward[kept].tolist(), strict=True):
         if slope >= STANDING_SLOPE:
             surfaces[f"surface_{len(surfaces)}"] = vertices

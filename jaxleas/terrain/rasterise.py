@@ -5,7 +5,7 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.areas import are_level, bounds
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution
@@ -106,9 +106,26 @@ def covered_cells(
     rows, columns = frame.shape
     for start in range(0, len(polygons), BATCH_POLYGONS):
         some = polygons[start : start + BATCH_POLYGONS]
+        some = some[_may_cover(some, frame, grow)]
         planes = _planes(some, np.array(frame.origin), frame.resolution, grow)
         for size, chosen, corner in _batches(planes, rows, columns):
             yield _under(rows, columns, planes, size, chosen, corner)
+
+
+def _may_cover(
+    polygons: Float[np.ndarray, "N V 3"], frame: HeightMap, grow: float
+) -> Bool[np.ndarray, " N"]:
+    """Return which polygons may lie over the middle of a cell: of many small ones few do."""
+    found = np.ones(len(polygons), bool)
+    reach = (grow + 2e-6 * frame.resolution) / frame.resolution
+    for axis in range(2):
+        corners = [polygons[:, corner, axis] for corner in range(polygons.shape[1])]
+        low, high = (
+            (reduce(pick, corners) - frame.origin[axis]) / frame.resolution
+            for pick in (np.minimum, np.maximum)
+        )
+        found &= np.ceil(low - reach) <= np.floor(high + reach)
+    return found
 
 
 class _Planes(NamedTuple):

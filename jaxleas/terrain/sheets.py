@@ -16,6 +16,7 @@ CORNER = 2.0
 a body those beside the edge may lie outside."""
 WELD = 1e-5
 """Distance below which ends of edges are the same point [m]."""
+_POLYGONS = 200_000  # at a time, to save memory
 _CROSSINGS = 2_000_000  # of edges and sides of cells at a time, to save memory
 
 
@@ -51,7 +52,7 @@ def raise_sheets(
     cell, z, held, edge = (np.concatenate(each) for each in zip(*found, strict=True))
     # An edge that carries a top is the side of a body: its top may slope away within a cell.
     used = np.unique(edge)
-    carries = np.isin(_keys(ends[used]), _keys(_edges(polygons[level])))
+    carries = _are_among(_keys(ends[used]), polygons[level])
     slack = np.where(carries, 2.0 * resolution, HELD)[np.searchsorted(used, edge)]
     high = z > held + slack
     np.maximum.at(heights.reshape(-1), cell[high], z[high].astype(heights.dtype))
@@ -62,6 +63,19 @@ def raise_sheets(
 def _edges(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "E 2 3"]:
     ends = np.stack([polygons, np.roll(polygons, -1, axis=1)], axis=2).reshape(-1, 2, 3)
     return ends[np.linalg.norm(ends[:, 1, :2] - ends[:, 0, :2], axis=1) > WELD]
+
+
+def _are_among(
+    keys: Int[np.ndarray, " E"], polygons: Float[np.ndarray, "N V 3"]
+) -> Bool[np.ndarray, " E"]:
+    """Return which keys are those of edges of polygons, which may be very many more."""
+    ordered, index = np.unique(keys, return_inverse=True)
+    found = np.zeros(len(ordered), bool)
+    for start in range(0, len(polygons), _POLYGONS):
+        theirs = _keys(_edges(polygons[start : start + _POLYGONS]))
+        at = np.minimum(np.searchsorted(ordered, theirs), len(ordered) - 1)
+        found[at[ordered[at] == theirs]] = True
+    return found[index]
 
 
 def _above(

@@ -1,14 +1,18 @@
-"""Polygons with holes cut into few convex parts (Hertel and Mehlhorn 1983), in plan."""
+"""Polygons with holes cut into few convex parts, in plan."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.terrain.half_edges import HalfEdges, facing_sides
+from jaxleas.terrain.merging import merge
+
 WORTH = 0.85
 """Part of a polygon that a single convex one must cover to stand for it."""
 FLAT = 1e-9
-"""Area of a triangle from which on its corner counts as bent [cells^2]."""
+"""Twice the area of a triangle [cells^2] and the distance of a corner from a line [cells] that are
+none."""
 NEAR = 0.02
 """Distance below which two corners are one [cells]."""
 
@@ -33,7 +37,7 @@ def convex_parts(
     points = np.ascontiguousarray(np.concatenate([outer, *holes]), np.float64)
     ends = np.cumsum([len(outer), *map(len, holes)]).astype(np.uint32)
     triangles = mapbox_earcut.triangulate_float64(points, ends).reshape(-1, 3)
-    return [points[loop] for loop in _merged(points, triangles)]
+    return _merged(points, triangles.astype(np.int64))
 
 
 def area(corners: Float[np.ndarray, "V 2"]) -> float:
@@ -74,58 +78,29 @@ def distinct(corners: Float[np.ndarray, "V 2"]) -> Float[np.ndarray, "W 2"]:
     return corners[apart]
 
 
-def _merged(points: Float[np.ndarray, "P 2"], triangles: Int[np.ndarray, "T 3"]) -> list[list[int]]:
-    """Return loops of triangles merged over the diagonals that no corner needs."""
-    at = points.tolist()
-    loops: dict[int, list[int]] = {}
-    sides: dict[tuple[int, int], int] = {}
-    for number, (a, b, c) in enumerate(triangles.tolist()):
-        turn = _turn(at, a, b, c)
-        if abs(turn) > FLAT:
-            loops[number] = [a, b, c] if turn > 0.0 else [a, c, b]
-    for number, loop in loops.items():
-        sides |= dict.fromkeys(_sides(loop), number)
-    for a, b in sorted(sides, key=lambda side: -_squared_length(at, *side)):
-        left, right = sides[a, b], sides.get((b, a))
-        if right is None or left == right or a > b:
-            continue
-        loop = _without_side(loops[left], loops[right], a, b)
-        if _is_convex_at(at, loop, a) and _is_convex_at(at, loop, b):
-            loops[left] = loop
-            sides |= dict.fromkeys(_sides(loops.pop(right)), left)
-    return [_without_flat(at, loop) for loop in loops.values()]
+def _merged(
+    points: Float[np.ndarray, "P 2"], triangles: Int[np.ndarray, "T 3"]
+) -> list[Float[np.ndarray, "W 2"]]:
+    """Return triangles merged over the sides that no corner needs, asked from the longest on."""
+    turn = _turns(points[triangles])
+    triangles = triangles[np.abs(turn) > FLAT]
+    clockwise = turn[np.abs(turn) > FLAT] < 0.0
+    triangles[clockwise] = triangles[clockwise, ::-1]
+    pairs = facing_sides(triangles)
+    at = np.column_stack([points, np.zeros(len(points))])
+    borders = HalfEdges(triangles, pairs)
+    length = np.linalg.norm(at[borders.end] - at[borders.origin], axis=1)
+    order = pairs[np.argsort(-length[pairs[:, 0]], kind="stable"), 0]
+    leader = merge(at, borders, np.tile([0.0, 0.0, 1.0], (len(triangles), 1)), order, FLAT)
+    borders.simplify(at, FLAT)
+    sides = np.flatnonzero(borders.alive)
+    _, first = np.unique(leader[sides // 3], return_index=True)
+    vertices, counts = borders.loops(sides[first])
+    loops = np.split(points[vertices], np.cumsum(counts)[:-1])
+    return [each for each in loops if len(each) >= 3]
 
 
-def _sides(loop: list[int]) -> list[tuple[int, int]]:
-    return list(zip(loop, loop[1:] + loop[:1], strict=True))
-
-
-def _without_side(left: list[int], right: list[int], a: int, b: int) -> list[int]:
-    """Return the loop around two loops that share the side from a to b, and b to a."""
-    first, second = left.index(b), right.index(a)
-    return left[first:] + left[:first] + (right[second:] + right[:second])[1:-1]
-
-
-def _is_convex_at(at: list[list[float]], loop: list[int], corner: int) -> bool:
-    index = loop.index(corner)
-    return _turn(at, loop[index - 1], corner, loop[(index + 1) % len(loop)]) >= -FLAT
-
-
-def _without_flat(at: list[list[float]], loop: list[int]) -> list[int]:
-    """Drop corners in the middle of a straight side."""
-    kept = [
-        corner
-        for index, corner in enumerate(loop)
-        if _turn(at, loop[index - 1], corner, loop[(index + 1) % len(loop)]) > FLAT
-    ]
-    return kept if len(kept) >= 3 else loop
-
-
-def _turn(at: list[list[float]], a: int, b: int, c: int) -> float:
-    """Return twice the area of a triangle, positive for a turn to the left."""
-    (ax, ay), (bx, by), (cx, cy) = at[a], at[b], at[c]
-    return (bx - ax) * (cy - by) - (by - ay) * (cx - bx)
-
-
-def _squared_length(at: list[list[float]], a: int, b: int) -> float:
-    return (at[a][0] - at[b][0]) ** 2 + (at[a][1] - at[b][1]) ** 2
+def _turns(corners: Float[np.ndarray, "T 3 2"]) -> Float[np.ndarray, " T"]:
+    """Return twice the areas of triangles, positive for a turn to the left."""
+    (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 1]).T
+    return ax * by - ay * bx
