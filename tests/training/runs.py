@@ -22,7 +22,7 @@ def tiny(**ppo) -> SteeringRun:
 
 def environment(devices: int) -> dict[str, str]:
     """Return the variables of a process that takes the processor for several devices."""
-    forced = f"--xla_force_host_platform_device_count={devices}"
+    forced = f"{os.environ['XLA_FLAGS']} --xla_force_host_platform_device_count={devices}"
     return os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": forced, "PYTHONPATH": str(ROOT)}
 
 

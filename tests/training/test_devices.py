@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from jaxleas.cli_guard import UsageError
 from jaxleas.runs.metrics import read_metrics
@@ -16,7 +15,8 @@ from jaxleas.training.devices import choose_devices
 from jaxleas.training.processes import connect
 from jaxleas.types import InputError
 
-from .runs import ROOT, TINY, environment, start_training, tiny
+from ..probes.configs import DRIFT, write
+from .runs import ROOT, environment, start_training, tiny
 
 PATIENCE = 900  # with a program that hangs [s]
 # In a process that has two devices: trains on one and on two, and moves checkpoints between them.
@@ -175,13 +175,12 @@ def train_together(*arguments: str, cache: Path) -> None:
 @pytest.mark.slow
 def test_two_processes_train_as_one_does(tmp_path):
     """Each with its own device; then one process alone goes on with what two have begun."""
-    config = tmp_path / "tiny.yaml"
-    config.write_text(yaml.safe_dump(TINY))
-    alone, cache = tmp_path / "alone", tmp_path / "cache"
-    process = start_training(str(config), "--run-dir", str(alone), cache=cache)
+    config, cache = write(tmp_path, DRIFT), tmp_path / "cache"
+    size = ["--ppo.steps=32768", "--held_out.every=2", "--allow", DRIFT]
+    alone, together = tmp_path / "alone", tmp_path / "together"
+    process = start_training(str(config), "--run-dir", str(alone), *size, cache=cache)
     assert process.wait(timeout=PATIENCE) == 0
-    together = tmp_path / "together"
-    train_together(str(config), "--run-dir", str(together), cache=cache)
+    train_together(str(config), "--run-dir", str(together), *size, cache=cache)
     expected, found = (read_metrics(each / "metrics.jsonl") for each in (alone, together))
     assert [row["step"] for row in found] == [row["step"] for row in expected]
     for one, two in zip(expected, found, strict=True):
@@ -192,7 +191,7 @@ def test_two_processes_train_as_one_does(tmp_path):
     )
     newest = max((together / "checkpoints").glob("step_*.npz"))
     newest.unlink()  # as if it had been interrupted before the last examination
-    train_together("--resume", str(together), cache=cache)
+    train_together("--resume", str(together), "--allow", DRIFT, cache=cache)
     for name, value in arrays_of(alone / "checkpoints").items():
         again = arrays_of(together / "checkpoints")[name]
         np.testing.assert_allclose(again, value, rtol=1e-2, atol=1e-3, err_msg=name)

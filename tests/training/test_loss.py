@@ -1,5 +1,6 @@
 """Our PPO loss is Brax's: values and gradients, over batches with ends of every kind."""
 
+import functools
 from types import SimpleNamespace
 from typing import Any
 
@@ -90,28 +91,23 @@ def walked(networks, params, normaliser, seed):
     )
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
-@pytest.mark.parametrize("activation", ["relu", "swish"])
-def test_values_and_gradients_are_those_of_brax(seed, activation):
-    config = SteeringRun(
-        network=NetworkConfig(hidden=(24, 16), activation=activation),
-    )
+@functools.cache
+def gradients_of(activation):
+    """Return the configuration, and the gradient of our loss and of Brax's, compiled once."""
+    config = SteeringRun(network=NetworkConfig(hidden=(24, 16), activation=activation))
     numbers = PpoParams.of(config)
-    networks = brax_networks(config.network)
-    normaliser = initial_normaliser(config.network, SIGNATURE)
-    mine = make_networks(config.network, SIGNATURE)
-    params = mine.init(*jax.random.split(jax.random.key(seed)))
-    ours, last, theirs = walked(networks, params, normaliser, seed)
-    key = jax.random.key(9)
-    noise = (jax.random.normal(key, (*SAMPLES, 4)),)
+    brax, mine = brax_networks(config.network), make_networks(config.network, SIGNATURE)
 
-    def brax(params):
+    def own(params, minibatch):
+        return ppo_loss(params, minibatch, numbers, mine)
+
+    def theirs(params, normaliser, transitions, key):
         return compute_ppo_loss(
             params,
             normaliser,
-            theirs,
+            transitions,
             key,
-            networks,
+            brax,
             entropy_cost=numbers.entropy,
             discounting=numbers.discount,
             reward_scaling=numbers.reward_scale,
@@ -120,10 +116,21 @@ def test_values_and_gradients_are_those_of_brax(seed, activation):
             vf_coefficient=numbers.value_weight,
         )
 
-    (_, metrics), gradient = jax.value_and_grad(ppo_loss, has_aux=True)(
-        params, Minibatch(ours, last, noise), numbers, mine
-    )
-    (_, expected), expected_gradient = jax.value_and_grad(brax, has_aux=True)(params)
+    both = (jax.jit(jax.value_and_grad(loss, has_aux=True)) for loss in (own, theirs))
+    return config, *both
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("activation", ["relu", "swish"])
+def test_values_and_gradients_are_those_of_brax(seed, activation):
+    config, own, brax = gradients_of(activation)
+    normaliser = initial_normaliser(config.network, SIGNATURE)
+    params = make_networks(config.network, SIGNATURE).init(*jax.random.split(jax.random.key(seed)))
+    ours, last, theirs = walked(brax_networks(config.network), params, normaliser, seed)
+    key = jax.random.key(9)
+    noise = (jax.random.normal(key, (*SAMPLES, 4)),)
+    (_, metrics), gradient = own(params, Minibatch(ours, last, noise))
+    (_, expected), expected_gradient = brax(params, normaliser, theirs, key)
     assert metrics.keys() == expected.keys()
     for name, value in expected.items():
         # Brax adds 1e-5 inside the logarithm of its divergence.
@@ -151,7 +158,11 @@ def test_products_in_bfloat16_give_nearly_the_same_gradient():
         networks = make_networks(network, SIGNATURE)
         rows = ours.replace(observation=ours.observation.astype(products))
         batch = Minibatch(rows, last.astype(products), noise)
-        return jax.grad(ppo_loss, has_aux=True)(params, batch, PpoParams.of(config), networks)[0]
+
+        def loss(params):
+            return ppo_loss(params, batch, PpoParams.of(config), networks)
+
+        return jax.jit(jax.grad(loss, has_aux=True))(params)[0]
 
     exact, rough = gradient("float32"), gradient("bfloat16")
     for mine, theirs in zip(jax.tree.leaves(rough), jax.tree.leaves(exact), strict=True):

@@ -16,12 +16,10 @@ from jaxleas.training.ppo import make_train_step
 
 from ..envs.worlds import flat, height_map, world_of
 from .runs import SteeringRun
+from .waiting import HIGHEST, LOWEST, SAME, Waiting, WaitingRun
 
 pytestmark = pytest.mark.usefixtures("brax_ranks")
 
-FREE = {"reward": {"final_failure": 0.0}}  # failing costs nothing but the end
-ALIVE_ONLY = {"direction": 0.0, "orientation": 0.0, "turn": 0.0, "acceleration": 0.0, "alive": 1.0}
-ALIVE_ONLY |= FREE["reward"]
 SMALL = {
     "environments": 64,
     "unroll": 10,
@@ -34,38 +32,38 @@ SMALL = {
 }
 
 
-def always(heights, motion):
-    return jnp.ones_like(motion.yaw)
+def learn(config, task, world):
+    """Train, and return the final state, its metrics, and the networks."""
+    networks = make_networks(config.network, task.signature)
+    state = initial_state(config, task, world, networks)
+    train_step, history, traces = make_train_step(config, task, networks), [], 0
 
+    def counted(world, state):
+        nonlocal traces
+        traces += 1
+        return train_step(world, state)
 
-def run(condition=None, env=None, **ppo):
-    """Train on flat ground and return the final state, its metrics, and the networks."""
-    config = SteeringRun.model_validate(
-        {"network": {"hidden": [32, 32]}, "env": env or FREE, "ppo": SMALL | ppo}
-    )
-    steering = Steering(config.env, condition=condition)
-    networks = make_networks(config.network, steering.signature)
-    world = world_of(height_map(flat), height_map(flat, half_size=4.0))
-    state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks), donate_argnums=1)
-    history = []
+    step = jax.jit(counted, donate_argnums=1)
     for _ in range(config.ppo.updates):
         state, metrics = step(world, state)
         history.append({name: float(value) for name, value in metrics.items()})
+    assert traces == 1  # one program serves all updates
+    assert all(value for row in history for name, value in row.items() if "finite/" in name)
     return state, history, networks
 
 
-@pytest.mark.slow
-def test_the_cost_of_failing_grows_from_the_environments_to_the_final_one():
-    """Nobody survives a step: the mean reward is the cost of failing, update by update."""
+def wait(env, network=None, **ppo):
+    """Train robots that wait."""
+    network = {"hidden": [32, 32]} | (network or {})
+    config = WaitingRun.model_validate({"network": network, "env": env, "ppo": SMALL | ppo})
+    task = Waiting(config.env, config.terrain)
+    return learn(config, task, task.make_world((0,), False))
 
-    def fails_once_moved(heights, motion):
-        return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
 
-    env = {"reward": ALIVE_ONLY | {"failure": 1.0, "final_failure": 5.0}}
-    _, history, _ = run(fails_once_moved, env, steps=64 * 10 * 4)
-    cost = [-row["walk/reward"] for row in history]
-    np.testing.assert_allclose(cost, [1.0, 2.0, 3.0, 4.0], atol=0.05)
+def test_the_reward_is_weighed_by_the_progress_of_the_training():
+    """Update by update: four of them see 0, 1/4, 2/4 and 3/4 of it done."""
+    _, history, _ = wait({"pay": -1.0, "final_pay": -5.0}, steps=64 * 10 * 4)
+    np.testing.assert_allclose([row["walk/reward"] for row in history], [-1, -2, -3, -4], atol=1e-5)
 
 
 def mean_value(state, networks) -> float:
@@ -75,48 +73,42 @@ def mean_value(state, networks) -> float:
 
 def test_the_value_of_staying_alive_is_the_geometric_sum():
     """Reward 1 a step for ever: V = scale / (1 - discount)."""
-    state, _, networks = run(always, {"reward": ALIVE_ONLY}, discount=0.8, reward_scale=0.5)
+    state, _, networks = wait({}, discount=0.8, reward_scale=0.5)
     assert mean_value(state, networks) == pytest.approx(0.5 / (1 - 0.8), rel=0.03)
 
 
-@pytest.mark.slow
 def test_nothing_follows_a_termination():
-    """Every first step fails, so V is the reward of that one step: what the failure costs."""
-
-    def fails_once_moved(heights, motion):
-        # Starts have no vertical velocity; after one step of a noisy policy everybody has.
-        return 1.0 - 2.0 * (jnp.abs(motion.velocity[..., 2]) > 0.0)
-
-    env = {"reward": ALIVE_ONLY | {"failure": 0.7, "final_failure": 0.7}}
-    state, history, networks = run(fails_once_moved, env, discount=0.9, reward_scale=1.0)
-    assert history[-1]["walk/failures_per_1000_steps"] > 990.0
+    """Every step ends an episode, so V is the reward of that one step."""
+    env = {"pay": -0.7, "final_pay": -0.7, "ends": True}
+    state, history, networks = wait(env, discount=0.9, reward_scale=1.0)
+    assert history[-1]["walk/failures_per_1000_steps"] == 1000.0
     assert mean_value(state, networks) == pytest.approx(-0.7, abs=0.03)
 
 
 def test_it_learns_to_walk_to_goals_on_flat_ground():
-    _, history, _ = run(
-        environments=256, steps=256 * 20 * 30, unroll=20, minibatches=4, candidates=256
+    small = {"environments": 256, "unroll": 20, "minibatches": 4, "candidates": 256}
+    config = SteeringRun.model_validate(
+        {
+            "network": {"hidden": [32, 32]},
+            "env": {"reward": {"final_failure": 0.0}},  # failing costs nothing but the end
+            "ppo": SMALL | small | {"steps": 256 * 20 * 30},
+        }
     )
+    world = world_of(height_map(flat), height_map(flat, half_size=4.0))
+    _, history, _ = learn(config, Steering(config.env), world)
     reward = [row["walk/reward"] for row in history]
     assert np.mean(reward[-3:]) > np.mean(reward[:3]) + 0.25
 
 
-@pytest.mark.slow
 def test_running_statistics_learn_the_observation():
-    config = SteeringRun.model_validate(
-        {"network": {"hidden": [8], "normaliser": "running"}, "ppo": SMALL | {"steps": 640 * 3}}
-    )
-    steering = Steering(config.env)
-    networks = make_networks(config.network, steering.signature)
-    world = world_of(height_map(flat))
-    state = initial_state(config, steering, world, networks)
-    step = jax.jit(make_train_step(config, steering, networks))
-    for _ in range(3):
-        state, metrics = step(world, state)
-    assert all(bool(value) for name, value in metrics.items() if "finite/" in name)
-    heights = np.asarray(state.normaliser.mean)[4:]
-    assert np.all((heights < -0.5) & (heights > -1.4))
-    assert np.all(np.asarray(state.normaliser.std) >= 1e-2)  # constant inputs keep a floor
+    state, _, _ = wait({}, {"normaliser": "running"}, steps=640 * 3)
+    level, same = np.asarray(state.normaliser.mean)
+    middle, spread = (LOWEST + HIGHEST) / 2, (HIGHEST - LOWEST) / 12**0.5
+    assert level == pytest.approx(middle, abs=3 * spread / 64**0.5)
+    assert same == pytest.approx(SAME, abs=1e-3)
+    deviations = np.asarray(state.normaliser.std)
+    assert deviations[0] == pytest.approx(spread, rel=0.3)
+    assert deviations[1] == pytest.approx(1e-2)  # constant inputs keep a floor
 
 
 def test_mirroring_flips_whole_robots_and_twice_is_none():
@@ -153,25 +145,3 @@ def test_mirroring_flips_whole_robots_and_twice_is_none():
     sideways = np.asarray(once[0].raw_action[..., 1])
     original = np.asarray(batch.raw_action[..., 1])
     np.testing.assert_array_equal(sideways, np.where(flip[None], -original, original))
-
-
-def test_the_train_step_compiles_once():
-    config = SteeringRun.model_validate(
-        {"network": {"hidden": [8]}, "ppo": SMALL | {"steps": 640 * 3}}
-    )
-    steering = Steering(config.env)
-    networks = make_networks(config.network, steering.signature)
-    world = world_of(height_map(flat))
-    step = make_train_step(config, steering, networks)
-    traces = 0
-
-    def counted(world, state):
-        nonlocal traces
-        traces += 1
-        return step(world, state)
-
-    compiled = jax.jit(counted, donate_argnums=1)
-    state = jax.jit(lambda: initial_state(config, steering, world, networks))()
-    for _ in range(3):
-        state, _ = compiled(world, state)
-    assert traces == 1
