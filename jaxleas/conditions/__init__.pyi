@@ -1,4 +1,5 @@
 from .catalogue import TITLES as TITLES
+from .catalogue import EndingConditions as EndingConditions
 from .catalogue import make_conditions as make_conditions
 from .collision import Collision as Collision
 from .collision import collision as collision

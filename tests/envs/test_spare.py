@@ -57,6 +57,8 @@ def test_what_is_valid_with_room_to_spare_is_valid():
 def test_feelers_and_observation_do_not_change():
     config = CONFIG.model_copy(update={"observation": "feelers169"})
     plain, strict = SteeringEnv(config), SteeringEnv(config, spare=SPARE)
-    assert plain.feelers is not None
-    assert strict.feelers is not None
-    np.testing.assert_array_equal(plain.feelers.points_in_root, strict.feelers.points_in_root)
+    assert plain.sight.feelers is not None
+    assert strict.sight.feelers is not None
+    np.testing.assert_array_equal(
+        plain.sight.feelers.points_in_root, strict.sight.feelers.points_in_root
+    )

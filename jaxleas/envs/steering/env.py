@@ -1,6 +1,6 @@
 """LEAS steering as pure functions: a robot's root, a terrain, a goal (T ch. 3)."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import Any
 
 import jax.numpy as jnp
@@ -12,22 +12,18 @@ from jaxleas.conditions import (
     Condition,
     Foresight,
     MarginFunction,
-    Pick,
-    all_of,
     extended,
     footprint_points,
-    make_conditions,
     outline_points,
-    read_from,
-    with_points,
 )
 from jaxleas.envs.steering.config import SteeringConfig
+from jaxleas.envs.steering.endings import Endings, Given
 from jaxleas.envs.steering.feelers import Feelers
-from jaxleas.envs.steering.layout import ACTION_SIZE, MOTION_SIZE, layout_named
+from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
-from jaxleas.envs.steering.observation import direction_to_goal, seen_motion, write_observation
+from jaxleas.envs.steering.observation import direction_to_goal
 from jaxleas.envs.steering.reward import RewardParams, reward
-from jaxleas.envs.steering.spare import points_with_spare, with_larger_trunk
+from jaxleas.envs.steering.sight import Sight
 from jaxleas.envs.steering.state import (
     GOALS,
     Route,
@@ -35,7 +31,6 @@ from jaxleas.envs.steering.state import (
     SteeringResult,
     SteeringState,
 )
-from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import load_robot
 from jaxleas.terrain import Atlas
 from jaxleas.types import RootMotion
@@ -54,12 +49,10 @@ class SteeringEnv:
         config: configuration of the task.
         layout: layout of the observation.
         robot: robot that walks.
+        height_range: bounds to which seen heights are clipped, relative to the root [m].
         points_in_root: points at which the local terrain is sampled [m].
-        condition: condition on local terrain and motion; an episode ends where it fails.
-        conditions: conditions that together are `condition`, by name.
-        foresight: condition with memory, such as a surrogate of a contact planner; an episode also
-            ends where it fails. None: there is no such condition.
-        feelers: feelers of the layout; None: it has none.
+        endings: conditions under which an episode goes on.
+        sight: what a robot sees.
     """
 
     action_size = ACTION_SIZE
@@ -90,54 +83,35 @@ class SteeringEnv:
         self.layout = layout_named(config.observation)
         self.robot = load_robot(config.robot)
         self.height_range = (config.height_low, config.height_high)
-        # Points of the observation: places kept for the motion, then its grid.
-        self._seen = np.concatenate([np.zeros((MOTION_SIZE, 2)), self.layout.points_in_root])
         sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
         if config.outline_spacing:
             sampled = extended(sampled, outline_points(self.robot, config.outline_spacing))
-        named: Mapping[str, Condition | MarginFunction] = (
-            {} if condition is None else {"own": condition}
-        )
-        given = condition
-        if condition is None:
-            made = make_conditions(config.conditions, self.robot, sampled, config, allow)
-            condition, foresight = made.condition, foresight or made.foresight
-            named = made.named
-            if spare:
-                condition = self._hardened(made.condition, sampled, spare, allow)
-        self.foresight = foresight
-        # Points that the conditions read: only a few of all.
-        self._judge = with_points(condition, sampled)
-        self._judged = np.asarray(self._judge.points_in_root, np.float64)
-        self.points_in_root = extended(sampled, self._judged)
-        self.condition = read_from(self.points_in_root, self._judge)
-        self.conditions = {
-            name: read_from(self.points_in_root, with_points(each, sampled))
-            for name, each in named.items()
-        }
-        self.feelers = None
+        given = Given(condition, foresight, allow)
+        self.endings = Endings(config, self.robot, sampled, given, spare)
+        self.points_in_root = self.endings.points_in_root
+        feelers = None
         if self.layout.feelers:
-
-            def make(points: np.ndarray) -> Condition:
-                if given is not None:
-                    return with_points(given, sampled)
-                # A foresight follows an episode: it has no margin at places not walked to.
-                return make_conditions(
-                    config.conditions, self.robot, points, config, allow
-                ).condition
-
-            self.feelers = Feelers(self.robot, self.layout.feelers, make)
+            feelers = Feelers(self.robot, self.layout.feelers, self.endings.at)
             # All of them, also those known already: they are read as one block.
-            self.points_in_root = np.concatenate([self.points_in_root, self.feelers.points_in_root])
+            self.points_in_root = np.concatenate([self.points_in_root, feelers.points_in_root])
+        self.sight = Sight(self.layout, self.height_range, feelers)
+        self.observe = self.sight.observe
+        self.margin = self.endings.margin
 
-    def _hardened(
-        self, condition: Condition, sampled: np.ndarray, spare: float, allow: Collection[str]
-    ) -> Condition:
-        """Return a condition that holds where the named ones hold, also with less room."""
-        config, larger = self.config, with_larger_trunk(self.robot, spare)
-        points = points_with_spare(sampled, larger, config.outline_spacing, spare)
-        harder = make_conditions(config.conditions, larger, points, config, allow).condition
-        return all_of(condition, harder, order=sampled)
+    @property
+    def condition(self) -> Condition:
+        """Condition on local terrain and motion; an episode ends where it fails."""
+        return self.endings.condition
+
+    @property
+    def conditions(self) -> dict[str, Condition]:
+        """Conditions that together are `condition`, by name."""
+        return self.endings.conditions
+
+    @property
+    def foresight(self) -> Foresight | None:
+        """Condition with memory, such as a surrogate of a contact planner, if there is one."""
+        return self.endings.foresight
 
     def local_heights(
         self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
@@ -145,58 +119,9 @@ class SteeringEnv:
         """Return the local terrain: heights at `points_in_root` relative to the root [m]."""
         return atlas.heights_around(map_index, motion.position, motion.yaw, self.points_in_root)
 
-    def observe(
-        self,
-        heights_in_root: Float[Array, "*batch points"],
-        motion: RootMotion,
-        goal: Float[Array, "*batch 2"],
-    ) -> Float[Array, "*batch size"]:
-        """Return the observation of a robot that seeks `goal` on this local terrain."""
-        seen = heights_in_root[..., : len(self.layout.points_in_root)]
-        columns = jnp.pad(seen, [(0, 0)] * (seen.ndim - 1) + [(MOTION_SIZE, 0)])
-        observation = self._write(columns, *seen_motion(motion, goal))
-        if self.feelers is None:
-            return observation
-        first = len(self.points_in_root) - len(self.feelers.points_in_root)
-        felt = self.feelers(heights_in_root[..., first:], motion)
-        return jnp.concatenate([observation, felt], axis=-1)
-
     def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return the robots' observation: as `observe` on their local terrain, in one pass."""
-        motion = state.motion
-        where = state.plan.map_index, motion.position, motion.yaw
-        observation = atlas.heights_around(
-            *where, self._seen, self._write, *seen_motion(motion, self.goal(state))
-        )
-        if self.feelers is None:
-            return observation
-        feelers = self.feelers
-        felt = atlas.heights_around(
-            *where, feelers.points_in_root, lambda heights: feelers(heights, motion)
-        )
-        return jnp.concatenate([observation, felt], axis=-1)
-
-    def margin(
-        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
-    ) -> Float[Array, "*batch"]:
-        """Return the margin of the conditions that need no memory [m]."""
-        # Computed in the pass over the heights: outside it, each use of the margin would repeat it.
-        return atlas.heights_around(
-            map_index,
-            motion.position,
-            motion.yaw,
-            self._judged,
-            lambda heights: self._judge(heights, motion),
-        )
-
-    def _write(self, columns: Array, *seen: Array) -> Array:
-        """Return the observation of heights, after the columns that are kept for the motion."""
-        observation = write_observation(columns, *seen, height_range=self.height_range)
-        if not self.layout.counts_surfaces:
-            return observation
-        heights, layout = columns[..., MOTION_SIZE:], self.layout
-        count = surface_count(heights, layout.rows, layout.columns, self.height_range)
-        return jnp.concatenate([observation, count[..., None]], axis=-1)
+        return self.sight.look(atlas, state.plan.map_index, state.motion, self.goal(state))
 
     def start(self, motion: RootMotion, route: Route, memory: Any = ()) -> SteeringState:
         """Return the state at the beginning of an episode.
@@ -226,22 +151,6 @@ class SteeringEnv:
         after, result = self.advance(atlas, params, state, action)
         return after, SeenResult(**vars(result), observation=self.look(atlas, after))
 
-    def _judge_all(
-        self, atlas: Atlas, state: SteeringState, motion: RootMotion
-    ) -> tuple[Float[Array, "*batch"], Any]:
-        """Return the margin of all conditions that end an episode, and the foresight's memory."""
-        where = state.plan.map_index, motion.position, motion.yaw
-        margin = self.margin(atlas, state.plan.map_index, motion)
-        if self.foresight is None:
-            return margin, state.memory
-
-        def look_around(pick: Pick, points: np.ndarray) -> Array:
-            map_index, position, yaw = map(pick, where)
-            return atlas.heights_around(map_index, position, yaw, self.points_in_root[points])
-
-        foreseen, memory = self.foresight.follow(state.memory, look_around, motion)
-        return jnp.minimum(margin, foreseen), memory
-
     def advance(
         self,
         atlas: Atlas,
@@ -264,7 +173,7 @@ class SteeringEnv:
             return command, integrate(motion, command, config.limits)
 
         command, motion = compute_once(move, state.motion, action)
-        margin, memory = self._judge_all(atlas, state, motion)
+        margin, memory = self.endings.follow(atlas, state, motion)
         valid = margin >= 0.0
 
         toward, distance = direction_to_goal(motion, self.goal(state))
