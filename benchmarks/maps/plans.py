@@ -9,6 +9,7 @@ from jaxleas.contacts import ContactPlan, ContactProblem, plan_mip, problem_from
 from jaxleas.contacts.from_guide import NoGroundError
 from jaxleas.contacts.surfaces import make_surface
 from jaxleas.terrain import HeightMap, PlaneSearch, Scene, find_surfaces, rasterise
+from jaxleas.terrain.loading import scene_of_surfaces
 
 CELL, NOISE = 0.02, 0.01  # of the maps [m]
 GOOD = 0.02  # distance from true ground within which a foot stands well [m]
@@ -53,7 +54,7 @@ class Terrain:
             noise = NOISE * np.random.default_rng([seed, self.number]).normal(size=exact.shape)
             heights = (exact.heights + noise).astype(np.float32)
             found = find_surfaces(replace(exact, heights=heights), PlaneSearch(inset=inset))
-            self._found[seed, inset] = Scene(found.polygons)
+            self._found[seed, inset] = scene_of_surfaces(found)
         return self._found[seed, inset]
 
 

@@ -18,6 +18,8 @@ VERSION = 1
 NO_DATA = (-9999.0, -32767.0, -32768.0)
 """Numbers that surveys write where they know no height."""
 _LOG = logging.getLogger("jaxleas")
+TALL, STEEPEST = 20.0, 5.0
+"""Heights that span more than this [m], and this many times the map's width, may be no metres."""
 MAX_HEIGHT = 10_000.0
 """Height above which the units are probably wrong [m]."""
 
@@ -66,12 +68,18 @@ class HeightMap:
 def read_height_map(path: str | Path) -> HeightMap:
     """Read a height map from .npz: `heights`, `resolution` [m], `origin` x, y [m], any numbers.
 
+    `height` stands for `heights` too, and without an origin cell (0, 0) lies at x = y = 0, which is
+    said.
+
     Raises:
         InputError: an array is missing or unusable; the message says which, and what would do.
     """
-    arrays = read_npz(path, required=("heights", "resolution", "origin"), max_bytes=MAX_BYTES)
+    arrays = read_npz(path, required=("resolution",), max_bytes=MAX_BYTES)
     require_version_array(arrays, VERSION, path)
-    heights, resolution, origin = arrays["heights"], arrays["resolution"], arrays["origin"]
+    heights, resolution = _heights_in(path, arrays), arrays["resolution"]
+    if "origin" not in arrays:
+        _LOG.warning("%s states no origin: its cell (0, 0) lies at x = y = 0", path)
+    origin = arrays.get("origin", np.zeros(2))
     if heights.dtype.kind not in "fiu":
         raise InputError(f"{path}: heights are {heights.dtype}; they must be numbers [m]")
     if heights.ndim != 2 or min(heights.shape) < 2:
@@ -88,6 +96,28 @@ def read_height_map(path: str | Path) -> HeightMap:
         float(resolution.reshape(())),
         (float(origin[0]), float(origin[1])),
     )
+
+
+def _heights_in(path: str | Path, arrays: dict[str, np.ndarray]) -> np.ndarray:
+    for name in ("heights", "height"):
+        if name in arrays:
+            return arrays[name]
+    raise InputError(
+        f"{path} lacks the array heights; it holds {', '.join(map(ascii, arrays))[:200]}"
+    )
+
+
+def say_if_tall(height_map: HeightMap, where: str | Path) -> None:
+    """Say so if a map is much higher than wide: its heights may not be metres."""
+    x_min, x_max, y_min, y_max = height_map.extent
+    width = max(x_max - x_min, y_max - y_min)
+    span = float(np.nanmax(height_map.heights) - np.nanmin(height_map.heights))
+    if span > max(TALL, STEEPEST * width):
+        _LOG.warning(
+            "%s: its heights span %.4g m on a map %.4g m wide: are they metres? If the option"
+            " applies, --scale says how many metres a unit is",
+            *(where, span, width),
+        )
 
 
 def write_height_map(path: str | Path, height_map: HeightMap) -> None:

@@ -8,7 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.terrain.bodies import orient
-from jaxleas.terrain.height_map import HeightMap, require_resolution, require_usable
+from jaxleas.terrain.height_map import (
+    HeightMap,
+    require_resolution,
+    require_usable,
+    say_if_tall,
+)
 from jaxleas.terrain.images import import_png
 from jaxleas.terrain.losses import losses, say_losses
 from jaxleas.terrain.map_formats import MAPS
@@ -64,6 +69,7 @@ def import_terrain(path: str | Path, reading: Reading = READING, **stated: Any) 
         form = MAPS[suffix]
         require_applicable(path, how, form.options, form.title)
         height_map = moved(path, form.read(path, how), how.origin)
+        say_if_tall(height_map, path)
     else:
         refuse_unread(path)
         known = ", ".join(known_suffixes())

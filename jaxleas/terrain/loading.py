@@ -49,8 +49,8 @@ def load_scene(
 
 
 def scene_of_surfaces(found: FoundSurfaces) -> Scene:
-    """Return the surfaces found in a map as a scene; feet may touch all of them."""
-    return Scene(found.polygons)
+    """Return the surfaces found in a map, for feet, and its high rises, obstacles, as a scene."""
+    return Scene(found.polygons, found.obstacles)
 
 
 def has_polygons(path: str | Path) -> bool:

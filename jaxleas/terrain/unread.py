@@ -13,6 +13,11 @@ _KINDS = (
     ("a mesh of a kind", _MESH, (".gltf", ".dae", ".fbx", ".3ds", ".3mf", ".blend", ".step")),
     ("an image of a kind", _IMAGE, (".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".exr")),
     ("a world or robot", _WORLD, (".sdf", ".world", ".urdf", ".xacro")),
+    (
+        "a packed file",
+        "unpack it first",
+        (".zip", ".gz", ".bz2", ".xz", ".7z", ".rar", ".tar", ".tgz"),
+    ),
     ("a cloud of points", _CLOUD, (".las", ".laz", ".pcd", ".e57", ".xyz")),
 )
 

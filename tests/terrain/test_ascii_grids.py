@@ -81,6 +81,7 @@ def test_what_is_no_grid_is_refused_by_one_sentence(tmp_path, text, reason):
 @pytest.mark.parametrize(
     ("name", "remedy"),
     [
+        ("a.stl.gz", "packed file that is not read: unpack it first"),
         ("a.usd", r"USD stage that is not read: export it as \.glb"),
         ("a.USDZ", r"export it as \.glb"),
         ("a.dae", r"export it as \.glb"),

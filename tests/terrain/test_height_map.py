@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from jaxleas.terrain import HeightMap, read_height_map, write_height_map
+from jaxleas.terrain.importers import import_terrain
 from jaxleas.types import InputError
 
 
@@ -118,3 +119,17 @@ def test_objects_in_a_map_are_refused(tmp_path):
     np.savez(path, heights=np.array([[None, 1]]), resolution=0.04, origin=[0.0, 0.0])
     with pytest.raises(InputError, match="not a readable"):
         read_height_map(path)
+
+
+def test_a_height_array_without_an_origin_is_read_and_said(tmp_path, caplog):
+    np.savez(tmp_path / "map.npz", height=flat(), resolution=0.04)
+    found = read_height_map(tmp_path / "map.npz")
+    assert found.origin == (0.0, 0.0)
+    np.testing.assert_array_equal(found.heights, flat())
+    assert "states no origin" in caplog.text
+
+
+def test_heights_in_millimetres_are_noticed(tmp_path, caplog):
+    np.savez(tmp_path / "map.npz", heights=1000.0 * np.eye(20), resolution=0.04, origin=[0, 0])
+    import_terrain(tmp_path / "map.npz")
+    assert "span 1000 m on a map 0.8 m wide: are they metres?" in caplog.text

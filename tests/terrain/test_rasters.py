@@ -63,6 +63,26 @@ def test_no_data_far_places_and_coarse_cells(tmp_path, caplog):
     assert fine.height_at(np.array([[15.0, 15.0]]))[0] == pytest.approx(7.0 + 70.0, abs=1e-4)
 
 
+@pytest.mark.parametrize("by_matrix", [False, True])
+def test_a_south_row_that_comes_first_stays_in_the_south(tmp_path, caplog, by_matrix):
+    south = slope()[::-1]
+    scale = [(33550, "d", 3, (0.25, -0.25, 0.0)), (33922, "d", 6, (0, 0, 0, 100.0, 200.0, 0))]
+    matrix = (0.25, 0, 0, 100.0, 0, 0.25, 0, 200.0, 0, 0, 1, 0, 0, 0, 0, 1)
+    tags = [(34264, "d", 16, matrix)] if by_matrix else scale
+    tifffile.imwrite(tmp_path / "dem.tif", south, extratags=[*tags, METRES])
+    found = import_terrain(tmp_path / "dem.tif")
+    assert found.extent == pytest.approx((100.0, 112.5, 200.0, 210.0))
+    np.testing.assert_array_equal(found.heights, south)
+    assert "holds its south row first" in caplog.text
+
+
+def test_rows_from_east_to_west_are_refused(tmp_path):
+    tags = [(33550, "d", 3, (-0.2, 0.2, 0.0)), (33922, "d", 6, (0, 0, 0, 0, 0, 0)), METRES]
+    tifffile.imwrite(tmp_path / "west.tif", slope(), extratags=tags)
+    with pytest.raises(InputError, match="runs from east to west"):
+        import_terrain(tmp_path / "west.tif")
+
+
 def test_degrees_and_turned_or_oblong_cells_are_refused(tmp_path):
     with pytest.raises(InputError, match="is in degrees; warp it to metres"):
         import_terrain(geotiff(tmp_path / "a.tif", slope(), 1e-5, (8.0, 47.0), DEGREES))

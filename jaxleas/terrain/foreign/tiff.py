@@ -68,8 +68,11 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
         notes.append(f"states a scale of {scale:g} and an offset of {offset:g}, which are applied")
         heights = scale * heights + offset
     whole = values.dtype.kind != "f" and (scale, offset) == (1.0, 0.0)
-    arrays = {"heights": heights[::-1], "whole": whole, "levels": 2.0**bits}
-    return Answer(arrays | _place(tags, values.shape), notes)
+    place, south_first = _place(tags, values.shape)
+    if south_first:
+        notes.append("holds its south row first, and is read so")
+    heights = heights if south_first else heights[::-1]
+    return Answer({"heights": heights, "whole": whole, "levels": 2.0**bits} | place, notes)
 
 
 def _heights(values: np.ndarray, no_data: str | None, mask: np.ndarray | None) -> np.ndarray:
@@ -110,8 +113,11 @@ def _one_band(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     return values[..., :3] @ np.array([0.299, 0.587, 0.114]), ["is coloured; its grey is read"]
 
 
-def _place(tags: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Return the edge of a cell and the middle of the south-west one, if the file states them."""
+def _place(tags: dict[str, Any], shape: tuple[int, ...]) -> tuple[dict[str, Any], bool]:
+    """Return the edge of a cell and the middle of the south-west one, if the file states them.
+
+    Also returns whether the first row is the south one.
+    """
     scale, tie = tags.get("ModelPixelScale"), tags.get("ModelTiepoint")
     matrix = tags.get("ModelTransformation")
     if matrix is not None:
@@ -125,14 +131,17 @@ def _place(tags: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
         tie = np.asarray(tie, np.float64).reshape(-1)[:6]
         left, top = tie[3] - tie[0] * step[0], tie[4] + tie[1] * step[1]
     else:
-        return {}
+        return {}, False
     if int(tags.get("GTModelTypeGeoKey", 0)) == _GEOGRAPHIC:
         raise RefusedError("is in degrees; warp it to metres first, such as UTM")
     unit = _FEET.get(int(tags.get("ProjLinearUnitsGeoKey", 9001)), 1.0)
-    if not (step[0] > 0.0 and abs(step[0] - step[1]) < 1e-3 * step[0]):
-        raise RefusedError(f"has cells of {step[0]:g} x {step[1]:g}; a map has square ones")
+    if step[0] < 0.0:
+        raise RefusedError("runs from east to west; warp it to rows from west to east first")
+    if not (step[0] > 0.0 and abs(step[0] - abs(step[1])) < 1e-3 * step[0]):
+        raise RefusedError(f"has cells of {step[0]:g} x {abs(step[1]):g}; a map has square ones")
     point = int(tags.get("GTRasterTypeGeoKey", 1)) == 2  # then the tie is a middle, not a corner
     half = 0.0 if point else 0.5
-    x = left + half * step[0]
-    y = top - (shape[0] - 1 + half) * step[1]
-    return {"cell": step[0] * unit, "corner": np.array([x, y]) * unit}
+    south_first = step[1] < 0.0
+    south = 0 if south_first else shape[0] - 1
+    corner = np.array([left + half * step[0], top - (south + half) * step[1]])
+    return {"cell": step[0] * unit, "corner": corner * unit}, south_first

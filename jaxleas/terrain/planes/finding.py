@@ -14,6 +14,7 @@ from jaxleas.terrain.planes.noise import LEAST_NOISE, measured_noise
 from jaxleas.terrain.planes.pieces import closed, is_wide, pieces
 from jaxleas.terrain.planes.polygons import polygons_of
 from jaxleas.terrain.planes.region import Growth, Region
+from jaxleas.terrain.planes.rises import rises
 from jaxleas.terrain.planes.settings import PLANE_SEARCH, PlaneSearch
 from jaxleas.terrain.planes.windows import Windows, fit_windows
 from jaxleas.terrain.scene import Polygons
@@ -72,7 +73,9 @@ def find_surfaces(height_map: HeightMap, search: PlaneSearch = PLANE_SEARCH) -> 
         surface[region.box][region.cells] = len(good)
         polygons |= _named(len(good), parts)
         good.append(off)
-    return FoundSurfaces(polygons, surface, cells, np.array(good), noise, inset, cell)
+    return FoundSurfaces(
+        polygons, surface, cells, np.array(good), noise, inset, cell, rises(height_map)
+    )
 
 
 def _known_to(cell: float, noise: float) -> float:

@@ -33,6 +33,7 @@ class FoundSurfaces:
         noise: standard deviation of the heights that was reckoned with [m].
         inset: length by which the polygons are drawn in from the surfaces' edges [m].
         resolution: edge of a cell [m].
+        obstacles: upright faces where the map rises by half a metre from a cell to the next [m].
     """
 
     polygons: Polygons
@@ -42,6 +43,7 @@ class FoundSurfaces:
     noise: float
     inset: float
     resolution: float
+    obstacles: Polygons
 
     @property
     def area(self) -> float:

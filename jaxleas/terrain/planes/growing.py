@@ -85,6 +85,8 @@ def _grown(
     while True:
         for _ in range(2):
             cells = _agreeing(ground, windows, usable, region.plane, box)
+            if np.count_nonzero(cells) < ground.least_core:  # whether they hang together or not
+                return Region(plane, box, cells)
             cells = _with(cells, (r - box[0].start, c - box[1].start))
             if cells.sum() < ground.least_core:
                 return Region(plane, box, cells)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from jaxleas.terrain.planes.found import Cell, FoundSurfaces
+from jaxleas.terrain.planes.rises import LEAST
 from jaxleas.types import InputError
 
 NAMES = {
@@ -51,9 +52,13 @@ def _left_over(found: FoundSurfaces) -> str:
 
 
 def _passable(found: FoundSurfaces) -> str:
-    """Return the area of ground that is neither surface nor obstacle, as a clause."""
+    """Return what of the ground is an obstacle, and how much is neither that nor surface."""
+    faces = len(found.obstacles)
+    high = f"; rises of {LEAST:g} m and more are obstacles, {faces} upright faces" if faces else ""
     shares = found.shares
     ground = (1.0 - shares[Cell.SURFACE] - shares[Cell.VOID]) * found.cells.size
     if ground < 0.5:
-        return ""
-    return f"; those {ground * found.resolution**2:.2f} m2 of ground are no obstacles"
+        return high
+    return f"{high}; those {ground * found.resolution**2:.2f} m2 of ground are no obstacles" + (
+        " besides" if faces else ""
+    )
