@@ -78,6 +78,16 @@ COMMANDS = {
         "plan",
         "plan the next footsteps of a controller",
     ),
+    "gait walk": (
+        "jaxleas.crossing.walk_command",
+        "walk",
+        "walk a quadruped to a goal, planned at each contact",
+    ),
+    "gait course": (
+        "jaxleas.crossing.course_command",
+        "course",
+        "write a course for quadrupeds",
+    ),
     "sweep": ("jaxleas.sweeps.commands", "sweep", "search a space of configurations"),
     "population": (
         "jaxleas.sweeps.commands",

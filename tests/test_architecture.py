@@ -18,7 +18,7 @@ ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "xla", "files", "configuration", "workers", "runs", "geometry", "robots", "terrain"),
     *("dynamics", "conditions", "contacts", "physics", "controllers", "envs", "training", "guide"),
-    *("labels", "surrogates", "multicontact", "footsteps", "evaluation", "reports"),
+    *("labels", "surrogates", "multicontact", "footsteps", "crossing", "evaluation", "reports"),
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "cli"),
 )

@@ -55,7 +55,7 @@ CALLS: list[dict] = []
 def walk_command(monkeypatch) -> None:
     CALLS.clear()
     rooms = {"room": SimpleNamespace(walk=walk)}
-    monkeypatch.setattr(cli, "COMMANDS", {**cli.COMMANDS, "gait walk": ("room", "walk", "walk")})
+    monkeypatch.setattr(cli, "COMMANDS", {**cli.COMMANDS, "gait amble": ("room", "walk", "walk")})
     find = cli.import_module
     monkeypatch.setattr(cli, "import_module", lambda name: rooms.get(name) or find(name))
 
@@ -68,7 +68,7 @@ def refusal(*arguments: str) -> str:
 
 
 def test_options_follow_the_signature() -> None:
-    least = "gait walk runs/one --out G.npz"
+    least = "gait amble runs/one --out G.npz"
     most = f"{least} --starts 5 --suite wall --yaw -3.5 --origin 1 -2 --seeds 1 2 3 --verbose"
     for line in (least, f"{most} --json=x.json"):
         cli.run(line.split())
@@ -105,14 +105,14 @@ def test_options_follow_the_signature() -> None:
         ("terain show x", ["no command 'terain'", "meant 'terrain show'"]),
         ("terain", ["no command 'terain'", "meant 'terrain show'"]),
         ("qqqq", ["no command 'qqqq'", "there are terrain show, "]),
-        ("gait walk p --out x --strats 3", ["has no --strats, perhaps you meant --starts"]),
-        ("gait walk p --out x --start 3", ["perhaps you meant --starts"]),
-        ("gait walk p --out x more", ["jaxleas gait walk has no more"]),
-        ("gait walk p", ["required: --out"]),
-        ("gait walk --out x", ["required: POLICY"]),
-        ("gait walk p --out x --starts many", ["--starts: invalid int value: 'many'"]),
-        ("gait walk p --out x --suite bridge", ["invalid choice: 'bridge'", "hole", "wall"]),
-        ("gait walk p --out", ["--out: expected one argument"]),
+        ("gait amble p --out x --strats 3", ["has no --strats, perhaps you meant --starts"]),
+        ("gait amble p --out x --start 3", ["perhaps you meant --starts"]),
+        ("gait amble p --out x more", ["jaxleas gait amble has no more"]),
+        ("gait amble p", ["required: --out"]),
+        ("gait amble --out x", ["required: POLICY"]),
+        ("gait amble p --out x --starts many", ["--starts: invalid int value: 'many'"]),
+        ("gait amble p --out x --suite bridge", ["invalid choice: 'bridge'", "hole", "wall"]),
+        ("gait amble p --out", ["--out: expected one argument"]),
     ],
 )
 def test_a_mistake_is_one_sentence_with_the_nearest(line: str, expected: list[str]) -> None:
@@ -122,7 +122,7 @@ def test_a_mistake_is_one_sentence_with_the_nearest(line: str, expected: list[st
 
 
 def test_an_option_of_several_values_may_be_given_several_times() -> None:
-    cli.run(["gait", "walk", "p", "--out", "x", "--seeds", "1", "2", "--seeds", "3"])
+    cli.run(["gait", "amble", "p", "--out", "x", "--seeds", "1", "2", "--seeds", "3"])
     assert CALLS[0]["seeds"] == [1, 2, 3]
 
 
@@ -136,7 +136,7 @@ LOAD_NO_CODE = {
         "contacts export",
         "label",
     ),  # a planner is named on the command line itself
-    *("runs", "compare", "gait fit", "gait plan", "transition check"),  # plain values
+    *("runs", "compare", "gait fit", "gait plan", "gait course", "transition check"),  # plain
 }
 
 
@@ -156,7 +156,7 @@ def test_the_option_for_code_takes_a_module_and_a_class(name: str) -> None:
 
 def test_help_comes_from_the_docstring(capsys) -> None:
     with pytest.raises(SystemExit) as caught:
-        cli.run(["gait", "walk", "--help"])
+        cli.run(["gait", "amble", "--help"])
     text = " ".join(capsys.readouterr().out.split())
     assert caught.value.code == 0
     assert "Walk a policy." in text

@@ -38,11 +38,13 @@ class Ticked:
     """What happened in one tick.
 
     Attributes:
+        before: state that it began in.
         walking: the robots after it.
         torques: torques that were applied, noise included and within the motors' limits [Nm].
         stepped: its physics steps.
     """
 
+    before: BodyState
     walking: Walking
     torques: Float[np.ndarray, "N J"]
     stepped: Stepped
@@ -102,7 +104,7 @@ class Walk:
         torques = np.clip(torques, -limit, limit)
         stepped = self.physics.step(walking.state, torques, self._steps)
         after = Walking(memory, wanted, stepped.state, stepped.sensed, walking.ticks + 1)
-        return Ticked(after, torques, stepped)
+        return Ticked(walking.state, after, torques, stepped)
 
 
 STANDING_STIFFNESS, STANDING_DAMPING = 200.0, 8.0

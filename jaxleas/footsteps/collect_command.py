@@ -16,11 +16,11 @@ from jaxleas.footsteps.collecting import (
     is_done,
     plan_shards,
 )
-from jaxleas.footsteps.collection_runs import plan_runs
+from jaxleas.footsteps.collection_runs import COLLECTED, plan_runs
 from jaxleas.footsteps.records import Definition, FootstepRecords
 from jaxleas.physics import DEFAULT_BODY, load_body
 from jaxleas.runs import Progress, collect_provenance
-from jaxleas.types import MOVEMENTS, InputError
+from jaxleas.types import InputError
 
 
 def collect(
@@ -28,22 +28,23 @@ def collect(
     out: Path,
     controller: ControllerName = DEFAULT_CONTROLLER,
     robot: str = DEFAULT_BODY,
-    movements: Sequence[str] = MOVEMENTS,
+    movements: Sequence[str] = COLLECTED,
     settings: CollectionSettings = CollectionSettings(),  # noqa: B008  # its fields are options
     allow: Allow = (),
 ) -> None:
     """Walk a controller on level ground in physics, and collect its footsteps.
 
     Each movement is commanded at tenths of the largest speed: constant, and going to each higher
-    speed and back about every 1.5 s, at any phase of the gait. The same command continues where it
-    was interrupted.
+    speed and back about every 1.5 s, at any phase of the gait. In 30 more runs movement and speed
+    change at contacts, as a planner changes them. The same command continues where it was
+    interrupted.
 
     Args:
         out: folder of the footsteps: thesis/ has those found by heights of feet, contact/ those
             found by measured contact.
         controller: controller that walks.
         robot: robot that walks, or its MJCF file (.xml).
-        movements: movements that are commanded.
+        movements: movements that are commanded; 'changing' is all of them in turn.
         settings: how footsteps are collected.
         allow: controller of your own that may be run, as MODULE:CLASS.
     """

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from jaxleas.controllers import FALLS, TICK, UPRIGHT, Controller, Walk, falls
-from jaxleas.footsteps.collection_runs import CollectionRun
+from jaxleas.footsteps.collection_runs import CHANGING, ChangingCommand, CollectionRun
+from jaxleas.footsteps.contact_watch import NONE, ContactWatch
 from jaxleas.footsteps.extraction import extract_footsteps
 from jaxleas.footsteps.record_file import read_footsteps, write_footsteps
 from jaxleas.footsteps.records import Definition, FootstepRecords, join_footsteps
 from jaxleas.footsteps.samples import SampleLog
-from jaxleas.physics import Body, Variation, make_physics, standing
-from jaxleas.types import InputError
+from jaxleas.physics import Body, Sensed, Variation, make_physics, standing
+from jaxleas.types import ControllerIdentity, InputError
 
 DEFINITIONS: tuple[Definition, ...] = ("thesis", "contact")
 
@@ -180,22 +181,16 @@ def _walk(
         np.array([rng.uniform(low, high) for rng in drawn]),
         np.array([1.0 + rng.uniform(-1.0, 1.0) * settings.trunk_mass for rng in drawn]),
     )
-    times = TICK * np.arange(ticks)
-    commands = np.stack(
-        [
-            run.commands(controller.identity, times, rng)
-            for run, rng in zip(shard.runs, drawn, strict=True)
-        ],
-        axis=1,
-    )
+    commands = _Commands(shard.runs, controller.identity, ticks, drawn)
     walk = Walk(make_physics(body, count, variation=variation), controller, settings.noise)
     start = standing(body, np.zeros((count, 3)))
     walking, log = walk.begin(start), SampleLog(ticks, count, len(body.legs))
     noise = np.random.default_rng([settings.seed, shard.number, _NOISE])
     down, fell = np.zeros(count, dtype=bool), []
     for index in range(ticks):
-        walking = walk.tick(walking, commands[index], noise).walking
-        log.add(walking.sensed, commands[index])
+        command = commands.at(index, walking.sensed)
+        walking = walk.tick(walking, command, noise).walking
+        log.add(walking.sensed, command)
         causes = falls(body, walking.state, walking.sensed)
         for robot in np.flatnonzero((causes != UPRIGHT) & ~down):
             run = shard.runs[robot]
@@ -206,6 +201,48 @@ def _walk(
             walking = replace(walking, state=walking.state.replaced(down, start))
         tick()
     return log, fell
+
+
+class _Commands:
+    """Commands of the runs of a shard.
+
+    Args:
+        runs: runs that walk at once.
+        controller: identity of the controller that walks.
+        ticks: number of ticks.
+        drawn: source of each run's draws.
+    """
+
+    def __init__(
+        self,
+        runs: Sequence[CollectionRun],
+        controller: ControllerIdentity,
+        ticks: int,
+        drawn: Sequence[np.random.Generator],
+    ) -> None:
+        self._watch = ContactWatch(controller, len(runs))
+        times = TICK * np.arange(ticks)
+        self._planned = np.zeros((ticks, len(runs), 3))
+        self._changing: dict[int, ChangingCommand] = {}
+        for robot, (run, rng) in enumerate(zip(runs, drawn, strict=True)):
+            if run.movement == CHANGING:
+                self._changing[robot] = ChangingCommand(controller, rng)
+            else:
+                self._planned[:, robot] = run.commands(controller, times, rng)
+
+    def at(self, tick: int, sensed: Sensed) -> np.ndarray:
+        """Return the commands during a tick.
+
+        Args:
+            tick: number of the tick; each is asked for once, in order.
+            sensed: measurements before it.
+        """
+        command, ended = self._planned[tick], self._watch.update(sensed)
+        for robot, changing in self._changing.items():
+            if ended[robot] != NONE:
+                changing.footstep_ended()
+            command[robot] = changing.now
+        return command
 
 
 _NOISE = 1

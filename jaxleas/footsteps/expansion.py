@@ -10,6 +10,29 @@ from jaxleas.footsteps.features import turned
 from jaxleas.footsteps.framed_map import FramedMap
 from jaxleas.footsteps.model import MOTION, MotionModel
 from jaxleas.footsteps.plan import REFUSALS, Miss, Refusal
+from jaxleas.types import InputError
+
+CLIMBS = 0.02
+"""Rise or drop of a footstep from which on it climbs [m]."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What footsteps are kept within.
+
+    Attributes:
+        fastest: largest speed that is tried, over the controller's largest.
+        climbing: largest speed, commanded and afterwards, where a foot steps up or down, over the
+            controller's largest.
+        doubt: what each footstep before adds to the buffer of a landing [m].
+        jump: largest change of the command from one footstep to the next: sum over its parts, each
+            over the controller's largest.
+    """
+
+    fastest: float = 1.0
+    climbing: float = 1.0
+    doubt: float = 0.0
+    jump: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,15 +93,38 @@ class Expander:
     Args:
         model: motion models.
         costs: foot cost map.
+        limits: largest speeds, and how the buffer grows.
+
+    Raises:
+        InputError: no command is as slow as that.
     """
 
-    def __init__(self, model: MotionModel, costs: FootCostMap) -> None:
+    def __init__(
+        self,
+        model: MotionModel,
+        costs: FootCostMap,
+        limits: Limits | None = None,
+    ) -> None:
+        limits = Limits() if limits is None else limits
+        fastest, climbing = limits.fastest, limits.climbing
         self.model, self.controller = model, model.controller
-        self.commands = model.commands()
+        commands = model.commands()
+        shares = np.abs(commands) / np.maximum(model.controller.max_speeds, 1e-9)
+        shares = shares.max(axis=1)
+        self.commands = commands[shares <= fastest + 1e-9]
+        if not len(self.commands):
+            raise InputError(
+                f"no command is as slow as {fastest:g} of the largest speed; the slowest is"
+                f" {shares.min(initial=1.0):g} of it"
+            )
+        self._climbs = shares[shares <= fastest + 1e-9] <= climbing + 1e-9
+        self._climbing = climbing * model.controller.max_speeds[0] if climbing < 1.0 else np.inf
         self.refused: dict[Refusal, int] = {}
         self.miss: Miss | None = None
         self.forget()
         self._map = FramedMap(costs)
+        self._doubt, self._jump = limits.doubt, limits.jump
+        self._shares = self.commands / np.maximum(model.controller.max_speeds, 1e-9)
         # The command's share of a prediction is the same in every state.
         self._of_command = [self.commands @ weights[:3] for weights in model.weights]
         self._of_state = [weights[3:] for weights in model.weights]
@@ -97,10 +143,11 @@ class Expander:
         com, yaw, velocity, places, is_known = self._predicted(parents, swinging)
         lift_offs = np.stack([node.feet for node in parents])[:, swinging]
 
+        is_known &= self._steady(parents)
         kept = self._allowed("unknown motion", np.arange(len(command)), is_known)
         kept = self._allowed("map", kept, self._map.inside(com[kept]))
         distance, height = self._map.at(places[kept])
-        short = self._map.buffer - distance
+        short = self._map.buffer + self._doubt * parents[0].depth - distance
         safe = np.all(short < 0, axis=1)
         self._note_miss(short[~safe], places[kept[~safe]], swinging)
         kept, near = self._allowed("landing", kept, safe), FAR_ENOUGH - distance[safe]
@@ -108,6 +155,10 @@ class Expander:
         rise = np.abs(height - lift_offs[parent[kept], :, 2]).max(axis=1, initial=0.0)
         low = rise <= self.controller.swing_height
         kept, near, height = self._allowed("step height", kept, low), near[low], height[low]
+        speed = np.hypot(velocity[kept, 0], velocity[kept, 1])
+        slow = self._climbs[command[kept]] & (speed <= self._climbing)
+        slow |= rise[low] <= CLIMBS
+        kept, near, height = self._allowed("climbing", kept, slow), near[slow], height[slow]
         landings = np.concatenate([places[kept], height[..., None]], axis=-1)
         return Children(
             *(parents, parent[kept], command[kept], com[kept], yaw[kept], velocity[kept]),
@@ -174,6 +225,12 @@ class Expander:
         else:
             places = after[:, None] + turned(moved, (before + turn)[:, None])
         return after, before + turn, outputs[:, 3:MOTION], places, is_known
+
+    def _steady(self, parents: list[Node]) -> Bool[np.ndarray, " K"]:
+        """Return whether each command from each state is near enough to the one before."""
+        before = np.stack([node.command for node in parents]) / self.controller.max_speeds
+        apart = np.abs(self._shares - before[:, None]).sum(axis=2)
+        return (apart <= self._jump + 1e-9).ravel()
 
     def _allowed(
         self, reason: Refusal, rows: Int[np.ndarray, " K"], allowed: Bool[np.ndarray, " K"]

@@ -57,7 +57,7 @@ def extract_footsteps(
     stand = _level(samples, controller) if definition == "thesis" else _touching(samples)
     ends = np.flatnonzero(stand & ~np.roll(stand, 1) & (np.arange(len(stand)) > 0))
     first = int(np.argmax(stand)) if stand.any() else 0
-    shortest = SHORTEST * _swing_time(controller)
+    shortest = SHORTEST * swing_time(controller)
     before, rejected, kept = first, Counter[str](), []
     for end in ends:
         if samples.time[end] - samples.time[before] < shortest:
@@ -84,7 +84,8 @@ def _touching(samples: Samples) -> Bool[np.ndarray, " T"]:
     return np.asarray((samples.forces > TOUCHES).all(axis=1))
 
 
-def _swing_time(controller: ControllerIdentity) -> float:
+def swing_time(controller: ControllerIdentity) -> float:
+    """Return the time of a swing of a controller [s], a guess where it does not state it."""
     cycle, duty = (controller.settings.get(key) for key in ("cycle", "duty"))
     if isinstance(cycle, float) and isinstance(duty, float):
         return cycle * (1.0 - duty)

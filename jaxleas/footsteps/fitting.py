@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from jaxleas.footsteps.features import COM, Predictors, com_labels
 from jaxleas.footsteps.judging import held_out_errors, linear_scores, rival_scores
-from jaxleas.footsteps.model import Errors, FeetMode, MotionModel
+from jaxleas.footsteps.model import BACKWARD, Errors, FeetMode, MotionModel
 from jaxleas.footsteps.pair_footsteps import MODES, PairFootsteps
 from jaxleas.footsteps.records import FootstepRecords, Footsteps, movement_of
 from jaxleas.footsteps.regression import least_squares
@@ -120,9 +120,13 @@ def _weights(part: PairFootsteps, choice: Predictors, mode: FeetMode) -> Float[n
 
 
 def _fastest(steps: Footsteps, movements: tuple[str, ...]) -> dict[str, float]:
-    """Return the largest speed that was commanded of each movement."""
+    """Return the largest speed that was commanded of each movement, and backward if it was."""
     speed, movement = np.abs(steps.command).max(axis=1), steps.movement
-    return {name: float(speed[movement == name].max()) for name in movements}
+    backward = (steps.command[:, 0] < 0.0) & (steps.command[:, 1:] == 0.0).all(axis=1)
+    found = {name: float(speed[movement == name].max()) for name in movements}
+    if backward.sum() >= FEWEST:
+        found[BACKWARD] = float(speed[backward].max())
+    return found
 
 
 def _require_enough(

@@ -16,6 +16,8 @@ MOTION = len(COM) + len(VELOCITY)
 """Number of outputs before those of the feet."""
 LEVELS = {name: 10 if name == "forward" else 9 for name in MOVEMENTS}
 """Fastest tenth of its largest speed that each movement is asked for (thesis, section 4.1.1)."""
+BACKWARD = "backward"
+"""Key of the largest backward speed in the data; 0 or missing: no such command is given."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,8 @@ class MotionModel:
         weights: weights of each pair, from all predictors and 1 to displacement of the centre of
             mass (x, y, yaw), its velocity afterwards (x, y, z, yaw rate) and x, y of each swinging
             foot.
-        fastest: largest speed of each movement in the data [m/s or rad/s].
+        fastest: largest speed of each movement in the data, and of walking backward if it is
+            there [m/s or rad/s].
         longest_stride: largest displacement of the centre of mass in the data [m].
         largest_turn: largest change of the heading in the data [rad].
         errors: errors on unseen runs.
@@ -91,15 +94,18 @@ class MotionModel:
 
         They are tenths of the controller's largest speeds, up to the fastest in the data.
         """
-        directions = np.array([(1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, -1), (0, 0, 1)], float)
+        names = (*MOVEMENTS, BACKWARD)
+        directions = np.array(
+            [(1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0)], float
+        )
         forward, sideways, turning = self.controller.max_speeds
-        speeds = (forward, sideways, sideways, turning, turning)
-        largest = dict(zip(MOVEMENTS, speeds, strict=True))
+        speeds = (forward, sideways, sideways, turning, turning, forward)
+        largest = dict(zip(names, speeds, strict=True))
         return np.array(
             [
                 direction * level / 10 * largest[name]
-                for name, direction in zip(MOVEMENTS, directions, strict=True)
-                for level in range(1, LEVELS[name] + 1)
+                for name, direction in zip(names, directions, strict=True)
+                for level in range(1, LEVELS.get(name, LEVELS[MOVEMENTS[0]]) + 1)
                 if level / 10 * largest[name] <= self.fastest.get(name, 0.0) + 1e-9
             ]
         ).reshape(-1, 3)

@@ -8,12 +8,13 @@ from jaxtyping import Float
 
 Status = Literal["reached", "horizon", "budget", "stand"]
 """The goal is reached; the horizon is; the budget of expansions ended first; no command is safe."""
-Refusal = Literal["unknown motion", "map", "landing", "step height", "swing"]
+Refusal = Literal["unknown motion", "map", "landing", "step height", "climbing", "swing"]
 REFUSALS: dict[Refusal, str] = {
     "unknown motion": "longer than any stride in the data",
     "map": "leaves the map",
     "landing": "lands too near an edge, or on no ground",
     "step height": "steps higher or lower than the swing",
+    "climbing": "steps up or down too fast",
     "swing": "swings through the ground",
 }
 

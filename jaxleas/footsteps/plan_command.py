@@ -8,7 +8,8 @@ import numpy as np
 from jaxleas.footsteps.cost_map import FootCostMap, buffer_of
 from jaxleas.footsteps.cost_pictures import draw_cost_map
 from jaxleas.footsteps.model_file import read_motion_model
-from jaxleas.footsteps.search import Cost, SearchSettings, plan_footsteps, settings_for
+from jaxleas.footsteps.search import SearchSettings, plan_footsteps, settings_for
+from jaxleas.footsteps.search_costs import Cost
 from jaxleas.footsteps.state_file import read_state, write_plan
 from jaxleas.footsteps.walking_state import Goal, require_goal, require_start
 from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
@@ -62,8 +63,7 @@ def plan(
     chosen = SearchSettings(
         horizon=horizon,
         cost=cost,
-        slack=0.0 if exact else quick.slack,
-        merge=quick.merge and not exact,
+        width=None if exact else quick.width,
         most_expansions=MOST_EXACT if exact else quick.most_expansions,
     )
     found = plan_footsteps(model, costs, start, target, chosen)

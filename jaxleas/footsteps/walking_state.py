@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from jaxleas.footsteps.cost_map import FootCostMap
+from jaxleas.footsteps.features import wrapped
 from jaxleas.footsteps.records import Footsteps
 from jaxleas.types import ControllerIdentity, InputError
 
@@ -57,6 +58,8 @@ class Goal:
         yaw: its heading [rad].
         distance: distance that counts as there [m].
         angle: difference of the heading that counts as there [rad].
+        speed: largest horizontal speed of the centre of mass that counts as there: a robot that is
+            to stop needs to be slow [m/s].
     """
 
     x: float
@@ -64,6 +67,30 @@ class Goal:
     yaw: float = 0.0
     distance: float = 0.05
     angle: float = float(np.radians(5.0))
+    speed: float = float("inf")
+
+    def is_met(
+        self,
+        com: Float[np.ndarray, "K 2"],
+        yaw: Float[np.ndarray, " K"],
+        velocity: Float[np.ndarray, "K 2"],
+    ) -> Bool[np.ndarray, " K"]:
+        """Return whether robots are there.
+
+        Args:
+            com: x and y of their centres of mass [m].
+            yaw: their headings [rad].
+            velocity: their horizontal velocities, in any frame [m/s].
+        """
+        apart = np.hypot(com[:, 0] - self.x, com[:, 1] - self.y)
+        turned_away = np.abs(wrapped(self.yaw - yaw))
+        slow = np.hypot(velocity[:, 0], velocity[:, 1]) <= self.speed
+        return (apart <= self.distance) & (turned_away <= self.angle) & slow
+
+    def is_met_by(self, state: WalkingState) -> bool:
+        """Return whether a measured robot is there."""
+        yaw = np.array([state.yaw])
+        return bool(self.is_met(state.com[None, :2], yaw, state.com_velocity[None, :2])[0])
 
 
 def require_start(state: WalkingState, costs: FootCostMap, controller: ControllerIdentity) -> None:

@@ -69,6 +69,8 @@ from .scenarios.transitions import transition as transition
 from .scene import Scene as Scene
 from .scene import read_scene as read_scene
 from .scene import write_scene as write_scene
+from .scene_edges import SceneEdges as SceneEdges
+from .scene_edges import ground_height as ground_height
 from .seeds import EVALUATION_SEED as EVALUATION_SEED
 from .seeds import HELD_OUT_SEED as HELD_OUT_SEED
 from .seeds import MAX_TRAINING_SEED as MAX_TRAINING_SEED

@@ -23,29 +23,98 @@ def best_cost(
         for (x, y, z), height in zip(state.feet, heights, strict=True)
     ]
     start = (list(state.com[:2]), state.yaw, velocity, feet, state.pair, list(state.command))
-    return _least(model, costs, start, goal, horizon, clearance)
+    strides = strides_of(model)
+    return _least(model, costs, start, goal, horizon, clearance, strides)
 
 
-def _least(model, costs, start, goal, horizon, clearance):
+def _least(model, costs, start, goal, horizon, clearance, strides):
     com, yaw, *_ = start
-    if _left(model, com, yaw, goal) == 0.0:
-        return 0.0
-    if horizon == 0:
-        return _left(model, com, yaw, goal)
+    if horizon == 0 or _is_there(com, yaw, goal):
+        return _left(model, com, yaw, goal, strides)
     least = math.inf
     for command in model.commands().tolist():
         stepped = step(model, costs, start, command)
         if stepped is not None:
             after, near = stepped
-            rest = _least(model, costs, after, goal, horizon - 1, clearance)
+            rest = _least(model, costs, after, goal, horizon - 1, clearance, strides)
             least = min(least, 1.0 + clearance * near + rest)
     return least
 
 
-def _left(model, com, yaw, goal):
-    apart = math.hypot(com[0] - goal.x, com[1] - goal.y) - goal.distance
-    turn = abs(math.remainder(goal.yaw - yaw, 2 * math.pi)) - goal.angle
-    return max(apart / model.longest_stride, turn / model.largest_turn, 0.0)
+def _is_there(com, yaw, goal):
+    apart = math.hypot(com[0] - goal.x, com[1] - goal.y)
+    return apart <= goal.distance and abs(_angle(goal.yaw - yaw)) <= goal.angle
+
+
+def _angle(angle):
+    return math.remainder(angle, 2 * math.pi)
+
+
+def _left(model, com, yaw, goal, strides):
+    """Return about how many footsteps are left: straight as it stands, or turned to the goal."""
+    ahead, aside, turn, back = strides
+    apart = math.hypot(com[0] - goal.x, com[1] - goal.y)
+    left, error = max(apart - goal.distance, 0.0), abs(_angle(goal.yaw - yaw))
+    at_least = max(left / model.longest_stride, (error - goal.angle) / model.largest_turn, 0.0)
+    bearing = _angle(math.atan2(goal.y - com[1], goal.x - com[0]) - yaw)
+    error = max(error - goal.angle, 0.0)
+    if left == 0.0:
+        return max(error / turn, at_least)
+    along = left * math.cos(bearing)
+    straight = (along / ahead if along >= 0.0 else -along / back) + abs(
+        left * math.sin(bearing) / aside
+    )
+    finish = max(abs(_angle(goal.yaw - yaw - bearing)) - goal.angle, 0.0)
+    around = abs(bearing) / turn + left / ahead + finish / turn
+    return max(min(straight + error / turn, around), at_least)
+
+
+def strides_of(model):
+    """Return what a footstep leads to at most when one command holds: ahead, aside, turned."""
+    found = {(axis, sign): [0.0] for axis in range(3) for sign in (1, -1)}
+    for command in model.commands().tolist():
+        com, yaw, velocity, previous = [0.0, 0.0], 0.0, [0.0] * 4, [0.0] * 3
+        feet, moved = [[0.0, 0.0] for _ in model.controller.feet], []
+        for number in range(12):
+            pair = number % 2
+            local = [each for foot in feet for each in _into(foot, com, yaw)]
+            seen = [*command, *local, *previous, *velocity, 1.0]
+            weights = model.weights[pair].tolist()
+            out = [sum(w[k] * s for w, s in zip(weights, seen, strict=True)) for k in range(11)]
+            after = _out_of(out[:2], com, yaw)
+            for index, foot in enumerate(model.controller.pairs[pair]):
+                landing = out[7 + 2 * index : 9 + 2 * index]
+                base, angle = (
+                    (after, yaw + out[2]) if model.feet == "relative" else (feet[foot], yaw)
+                )
+                feet[foot] = _out_of(landing, base, angle)
+            com, yaw, velocity, previous = after, yaw + out[2], out[3:7], command
+            moved.append(out[:3])
+        steady = [(a + b) / 2 for a, b in zip(moved[-1], moved[-2], strict=True)]
+        for axis, value in enumerate(command):
+            if value:
+                found[axis, int(math.copysign(1, value))].append(abs(steady[axis]))
+    return (
+        max(found[0, 1]),
+        max(min(max(found[1, 1]), max(found[1, -1])), 1e-3),
+        max(min(max(found[2, 1]), max(found[2, -1])), 1e-3),
+        max(*found[0, -1], 1e-3),
+    )
+
+
+def _into(point, origin, yaw):
+    dx, dy = point[0] - origin[0], point[1] - origin[1]
+    return [
+        math.cos(yaw) * dx + math.sin(yaw) * dy,
+        -math.sin(yaw) * dx + math.cos(yaw) * dy,
+    ]
+
+
+def _out_of(vector, origin, yaw):
+    return [
+        origin[0] + math.cos(yaw) * vector[0] - math.sin(yaw) * vector[1],
+        origin[1] + math.sin(yaw) * vector[0] + math.cos(yaw) * vector[1],
+    ]
 
 
 def step(model, costs, start, command):

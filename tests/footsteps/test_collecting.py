@@ -5,9 +5,9 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.controllers import find_controller
-from jaxleas.footsteps import read_footsteps
+from jaxleas.footsteps import movement_of, read_footsteps
 from jaxleas.footsteps.collecting import CollectionSettings, collect_shard, plan_shards
-from jaxleas.footsteps.collection_runs import CollectionRun, plan_runs
+from jaxleas.footsteps.collection_runs import ChangingCommand, CollectionRun, plan_runs
 from jaxleas.physics import load_body
 from jaxleas.types import MOVEMENTS, InputError
 
@@ -44,6 +44,36 @@ def test_commands_go_up_and_back_at_times_that_no_gait_shares() -> None:
     assert (holds <= 1.8 + 0.004).all()
     phases = times[changes] % 0.3
     assert np.histogram(phases, 3, (0.0, 0.3))[0].min() > 3
+
+
+def test_changing_commands_are_single_movements_held_for_some_footsteps() -> None:
+    changing = ChangingCommand(TROT.identity, np.random.default_rng(0))
+    held = []
+    for _ in range(2000):
+        held.append(changing.now)
+        changing.footstep_ended()
+    commands = np.array(held)
+    assert ((commands != 0.0).sum(axis=1) == 1).all()
+    assert set(movement_of(commands)) == {*MOVEMENTS, "mixed"}
+    np.testing.assert_allclose(commands.min(axis=0), [-0.5, -0.45, -0.9])
+    np.testing.assert_allclose(commands.max(axis=0), [1.0, 0.45, 0.9])
+    changes = np.flatnonzero(np.any(np.diff(commands, axis=0) != 0.0, axis=1))
+    assert np.diff(changes).min() == 1
+    assert 2.0 < np.diff(changes).mean() < 3.0
+
+
+def test_changing_runs_change_at_contacts(tmp_path) -> None:
+    (shard,) = plan_shards([CollectionRun(0, "changing", 0.0)], 1, tmp_path)
+    made, fell = collect_shard(
+        shard, BODY, TROT, CollectionSettings(seconds=6.0, seed=2), {}, lambda: None
+    )
+    steps = made["contact"].footsteps
+    assert not fell
+    assert len(steps) > 12
+    changed = (steps.command[1:] != steps.command[:-1]).any(axis=1)
+    # What is commanded in a footstep is in force from its beginning to its end.
+    np.testing.assert_array_equal(steps.previous_command[1:], steps.command[:-1])
+    assert 3 < changed.sum() < len(changed)
 
 
 def test_a_collection_is_kept_resumed_and_not_mixed(tmp_path, capsys) -> None:

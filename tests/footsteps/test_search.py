@@ -75,10 +75,10 @@ def test_no_sequence_of_commands_is_better_than_the_plan(models, seed):
     plan = plan_footsteps(models[1], costs, state, GOAL, SearchSettings(2))
     assert plan.cost == pytest.approx(best_cost(models[1], costs, state, GOAL, 2, 10.0), abs=1e-9)
     assert plan.gap == 0.0
-    merged = plan_footsteps(models[1], costs, state, GOAL, SearchSettings(2, slack=0.3, merge=True))
+    narrow = plan_footsteps(models[1], costs, state, GOAL, SearchSettings(2, width=20))
     if np.isfinite(plan.cost):
-        # Merged states differ by a cell: so may what is left from them.
-        assert plan.cost - 1e-9 <= merged.cost <= plan.cost + 0.3 + 0.1
+        assert plan.cost - 1e-9 <= narrow.cost <= plan.cost + 0.3
+        assert narrow.cost - narrow.gap <= plan.cost + 1e-9
 
 
 def test_three_footsteps_are_exact_too(models):

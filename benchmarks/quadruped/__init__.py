@@ -1,0 +1,1 @@
+"""A quadruped over stairs and gaps, planned and blind."""

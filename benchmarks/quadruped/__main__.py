@@ -1,0 +1,134 @@
+"""Measure a quadruped over stairs and gaps, planned at each contact and blind.
+
+python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
+
+Parts: stairs, gaps, noisy, stairs_blind, gaps_blind, and models, which needs --scores of `jaxleas
+gait fit`. Each part replaces its own figures in benchmarks/results/quadruped.json.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from benchmarks.contacts.rows import Row
+from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from benchmarks.quadruped.models import model_rows
+from benchmarks.quadruped.walks import Crossed, crossed, crossed_blind, worst_unsafe
+from jaxleas.cli_guard import run_guarded
+from jaxleas.crossing import make_course
+from jaxleas.terrain import EVALUATION_SEED, HELD_OUT_SEED
+from jaxleas.types import InputError
+
+OUT = Path(__file__).resolve().parents[2] / "benchmarks/results/quadruped.json"
+STAIRS = ("stairs_1", "stairs_2", "stairs_3")
+GAPS = ("gaps_1", "gaps_2", "gaps_12cm", "gaps_16cm")
+BLIND_GAPS = ("gaps_16cm", "gaps_20cm")
+BLIND_STAIRS_SPEED = 0.4
+BLIND_SPEEDS = (0.2, 0.4, 0.6, 0.8, 1.0)
+UNSAFE, SUCCESS, NOISY = 2.0, 100.0, 90.0  # this project's own targets [%]
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Measure the selected parts."""
+    given = _parser().parse_args(arguments)
+    machine = this_machine()
+    for part in given.parts:
+        measured = []
+        for row in PARTS[part](given):
+            measured.append(row.measurement(machine))
+            print(f"{row.name}: {measured[-1].value} {row.unit} {list(row.runs)}", flush=True)
+        if not given.held_out:
+            names = {each.name for each in measured}
+            before = read_measurements(given.out) if given.out.is_file() else []
+            kept = [each for each in before if each.name not in names]
+            write_measurements(given.out, [*kept, *measured])
+
+
+def _stairs(given: argparse.Namespace) -> Iterator[Row]:
+    """Yield success, unsafe landings of the worst foot of the worst stairs, and wrong pairs."""
+    found = _crossed(given, STAIRS)
+    yield _success("stairs_success", found, SUCCESS)
+    yield Row("stairs_unsafe_worst", _starts(found), [worst_unsafe(found)], limit=UNSAFE)
+    yield Row("wrong_pair", _starts(found), [max(each.counts.wrong_share for each in found)])
+
+
+def _gaps(given: argparse.Namespace) -> Iterator[Row]:
+    for name in GAPS:
+        yield _success(f"gaps_success_{name}", _crossed(given, [name]), SUCCESS)
+
+
+def _noisy(given: argparse.Namespace) -> Iterator[Row]:
+    found = [_told("stairs_1", crossed(make_course("stairs_1"), *_count(given), noisy=True))]
+    yield _success("noisy_success", found, NOISY)
+
+
+def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
+    speeds = (BLIND_STAIRS_SPEED,)
+    found = [
+        _told(name, crossed_blind(make_course(name), *_count(given), speeds)) for name in STAIRS
+    ]
+    yield _success("stairs_blind_success", found, None)
+    yield Row("stairs_blind_unsafe_worst", _starts(found), [worst_unsafe(found)])
+
+
+def _gaps_blind(given: argparse.Namespace) -> Iterator[Row]:
+    for name in BLIND_GAPS:
+        found = crossed_blind(make_course(name), *_count(given), BLIND_SPEEDS)
+        yield _success(f"gaps_blind_success_{name}", [_told(name, found)], None)
+
+
+def _models(given: argparse.Namespace) -> Iterator[Row]:
+    if given.scores is None:
+        raise InputError("models: give --scores, the scores.json of jaxleas gait fit")
+    yield from model_rows(given.scores)
+
+
+def _crossed(given: argparse.Namespace, names: Sequence[str]) -> list[Crossed]:
+    return [_told(name, crossed(make_course(name), *_count(given))) for name in names]
+
+
+def _count(given: argparse.Namespace) -> tuple[int, int]:
+    """Return number and seed of the starts."""
+    return given.starts, HELD_OUT_SEED if given.held_out else EVALUATION_SEED
+
+
+def _told(name: str, found: Crossed) -> Crossed:
+    print(f"{name}: {found.endings}\n{found.counts.in_words()}", flush=True)
+    return found
+
+
+def _success(name: str, found: Sequence[Crossed], limit: float | None) -> Row:
+    reached = sum(each.reached for each in found)
+    total = sum(len(each.crossings) for each in found)
+    return Row(name, _starts(found), [100.0 * reached / total], limit=limit, better="higher")
+
+
+def _starts(found: Sequence[Crossed]) -> str:
+    return f"% of {sum(len(each.crossings) for each in found)} starts"
+
+
+PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
+    "stairs": _stairs,
+    "gaps": _gaps,
+    "noisy": _noisy,
+    "stairs_blind": _stairs_blind,
+    "gaps_blind": _gaps_blind,
+    "models": _models,
+}
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.quadruped", description=__doc__)
+    add = parser.add_argument
+    add("parts", nargs="+", choices=PARTS)
+    add("--starts", type=int, default=10, help="number of starts")
+    add("--held-out", action="store_true", help="starts for tuning; nothing is written")
+    add("--scores", type=Path, help="scores.json of jaxleas gait fit")
+    add("--out", type=Path, default=OUT)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.argv[0] = "benchmarks.quadruped"  # as which errors are reported
+    sys.exit(run_guarded(lambda: main(sys.argv[1:])))

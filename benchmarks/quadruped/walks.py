@@ -1,0 +1,115 @@
+"""Robots that cross a course, all starts at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jaxleas.controllers import Walk, find_controller
+from jaxleas.crossing import (
+    BlindCommander,
+    Course,
+    Crossing,
+    MapErrors,
+    PlanningCommander,
+    Tally,
+    WalkSettings,
+    cross,
+    standing_on,
+    tally,
+    together,
+)
+from jaxleas.footsteps import FootCostMap, FootstepPlanner, buffer_of, shipped_model
+from jaxleas.physics import BodyState, load_body, make_physics
+from jaxleas.terrain import SceneEdges, rasterise
+
+CELL, COARSE = 0.01, 0.02
+"""Edge of a cell of the true map, and of the noisy one [m]."""
+NOISE, SHIFT = 0.01, 0.02
+"""Errors of the noisy map [m]."""
+CONTROLLER, BODY = "trot", "anymal_b"
+
+
+@dataclass(frozen=True)
+class Crossed:
+    """What became of some robots on one course.
+
+    Attributes:
+        crossings: one for each robot.
+        counts: what was counted of all together.
+    """
+
+    crossings: Sequence[Crossing]
+    counts: Tally
+
+    @property
+    def reached(self) -> int:
+        """Number of robots that stand at the goal."""
+        return sum(each.outcome == "reached" for each in self.crossings)
+
+    @property
+    def endings(self) -> str:
+        """How the robots ended, counted."""
+        names = [each.outcome for each in self.crossings]
+        return ", ".join(f"{names.count(name)} {name}" for name in sorted(set(names)))
+
+
+def crossed(course: Course, count: int, seed: int, noisy: bool = False) -> Crossed:
+    """Return what became of robots that plan at each contact.
+
+    Args:
+        course: course to cross.
+        count: number of starts.
+        seed: seed of the starts, and of the errors of each robot's map.
+        noisy: whether each robot's map is noisy and shifted.
+    """
+    settings = WalkSettings()
+    walk, start = _walk(course, course.starts(count, seed))
+    model = shipped_model(walk.controller.identity)
+    true = rasterise(course.scene, COARSE if noisy else CELL, 0.5)
+    errors = [MapErrors(NOISE, SHIFT, seed + robot) for robot in range(count)]
+    errors = errors if noisy else [MapErrors()]  # the true map serves all robots
+    planners = [
+        FootstepPlanner(model, FootCostMap.of(each.of(true), buffer_of(model)), settings.search)
+        for each in errors
+    ]
+    commanders = [
+        PlanningCommander(planners[robot % len(planners)], course.goals) for robot in range(count)
+    ]
+    return _judged(course, walk, cross(walk, start, commanders, settings.seconds))
+
+
+def crossed_blind(course: Course, count: int, seed: int, shares: Sequence[float]) -> Crossed:
+    """Return what became of robots that go straight ahead, at several speeds.
+
+    Args:
+        course: course to cross.
+        count: number of starts at each speed.
+        seed: seed of the starts.
+        shares: speeds over the largest.
+    """
+    starts = course.starts(count, seed)
+    walk, start = _walk(course, [each for _ in shares for each in starts])
+    commanders = [
+        BlindCommander(walk.controller.identity, course.goals, share)
+        for share in shares
+        for _ in range(count)
+    ]
+    return _judged(course, walk, cross(walk, start, commanders, WalkSettings().seconds))
+
+
+def _walk(course: Course, starts: Sequence[tuple[float, float, float]]) -> tuple[Walk, BodyState]:
+    body = load_body(BODY)
+    physics = make_physics(body, len(starts), course.scene)
+    return Walk(physics, find_controller(CONTROLLER, body)), standing_on(course.scene, body, starts)
+
+
+def _judged(course: Course, walk: Walk, crossings: Sequence[Crossing]) -> Crossed:
+    edges = SceneEdges.of(course.scene)
+    counts = [tally(each, edges, walk.controller.identity) for each in crossings]
+    return Crossed(crossings, together(counts))
+
+
+def worst_unsafe(found: Sequence[Crossed]) -> float:
+    """Return the share of unsafe landings of the worst foot on the worst course [%]."""
+    return float(np.max([each.counts.unsafe_share for each in found]))

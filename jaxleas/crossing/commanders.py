@@ -1,0 +1,188 @@
+"""Who commands a walking robot: the planner with its map, or nobody who looks (blind)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Literal, Protocol
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.footsteps import FootstepPlan, FootstepPlanner, Goal, WalkingState, turned, wrapped
+from jaxleas.types import ControllerIdentity, InputError
+
+Intent = Literal["go", "arrived", "no path"]
+"""Whether the robot shall walk, has arrived, or must stand because no command is safe."""
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What a robot shall do until its next contact.
+
+    Attributes:
+        intent: whether it shall walk, and if not, why.
+        command: forward and sideways speed [m/s] and turning rate [rad/s].
+        plan: plan whose first footstep is commanded; None without a planner.
+        seconds: time that the decision took [s].
+        goal: number of the goal that is walked to.
+    """
+
+    intent: Intent
+    command: Float[np.ndarray, "3"]
+    plan: FootstepPlan | None
+    seconds: float
+    goal: int
+
+
+class Commander(Protocol):
+    """Decides for one robot at each of its contacts."""
+
+    def decide(self, state: WalkingState) -> Decision:
+        """Return what the robot shall do.
+
+        Args:
+            state: measured state.
+        """
+        ...
+
+
+class PlanningCommander:
+    """Plans footsteps on a map at each contact, and commands the first velocity of the plan.
+
+    A robot that gets no nearer to its goal takes another run-up: for a few footsteps its goal is a
+    place behind it, at a drawn distance, so that its feet meet the edges ahead otherwise.
+
+    Args:
+        planner: planner on the map that the robot has.
+        goals: poses to reach in turn; only at the last one the robot must be slow enough to stop.
+        seed: seed of the lengths of run-ups.
+    """
+
+    def __init__(self, planner: FootstepPlanner, goals: Sequence[Goal], seed: int = 0) -> None:
+        self._planner = planner
+        self._goals = _Goals(goals)
+        self._run_up = _RunUp(np.random.default_rng(seed))
+
+    def decide(self, state: WalkingState) -> Decision:
+        """Return the first command of a plan from a measured state."""
+        begin = perf_counter()
+        goal = self._run_up.goal_for(state, self._goals.for_state(state))
+        plan = self._planner.plan(state, goal)
+        if not plan.footsteps and plan.status == "reached" and self._run_up.is_taken:
+            self._run_up.end()
+            plan = self._planner.plan(state, self._goals.for_state(state))
+        intent: Intent = "go"
+        if not plan.footsteps:
+            intent = "arrived" if plan.status == "reached" else "no path"
+        return Decision(intent, plan.command, plan, perf_counter() - begin, self._goals.number)
+
+
+class _RunUp:
+    """Sends a robot back that gets no nearer to its goal."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._rng = rng
+        self._nearest, self._waits = np.inf, 0
+        self._back: Goal | None = None
+        self._asked: Goal | None = None
+
+    @property
+    def is_taken(self) -> bool:
+        """Whether the robot walks back now."""
+        return self._back is not None
+
+    def end(self) -> None:
+        """Let the robot walk to its goal again."""
+        self._back, self._nearest, self._waits = None, np.inf, 0
+
+    def goal_for(self, state: WalkingState, goal: Goal) -> Goal:
+        """Return the goal, or a place behind the robot."""
+        if goal is not self._asked:
+            self._asked = goal
+            self.end()
+        self._waits += 1
+        apart = float(np.hypot(*(state.com[:2] - (goal.x, goal.y))))
+        if self._back is None and apart < self._nearest - NEARER:
+            self._nearest, self._waits = apart, 0
+        if self._back is not None and self._waits > PATIENCE:
+            self.end()
+        elif self._back is None and self._waits > PATIENCE and apart > NEAR_GOAL:
+            length = self._rng.uniform(*RUN_UPS)
+            behind = turned(np.array([-length, 0.0]), np.asarray(state.yaw)) + state.com[:2]
+            x, y = map(float, behind)
+            self._back = Goal(x, y, goal.yaw, 0.5 * RUN_UPS[0], REST_ANGLE)
+            self._waits = 0
+        return goal if self._back is None else self._back
+
+
+NEARER, PATIENCE = 0.05, 10
+"""Way towards the goal [m] that a robot must make in so many decisions."""
+RUN_UPS = (0.15, 0.60)
+"""Lengths of run-ups [m]."""
+NEAR_GOAL = 0.3
+"""Distance from the goal within which none is taken [m]."""
+REST_ANGLE = float(np.pi)
+"""Difference of the heading that does not matter [rad]."""
+
+
+class BlindCommander:
+    """Commands a robot straight at its goals, whatever lies on the way.
+
+    It goes towards the goal in a straight line, and turns to the heading that is wanted there.
+
+    Args:
+        controller: identity of the controller, whose largest speeds are kept.
+        goals: poses to reach in turn.
+        share: speed over the largest forward speed.
+
+    Raises:
+        InputError: the share is not above 0 and at most 1.
+    """
+
+    def __init__(
+        self, controller: ControllerIdentity, goals: Sequence[Goal], share: float = 0.4
+    ) -> None:
+        if not 0.0 < share <= 1.0:
+            raise InputError(
+                f"a blind walk at {share:g} of the largest speed: give more than 0, and at most 1"
+            )
+        self._largest = np.array(controller.max_speeds)
+        self._goals = _Goals(goals)
+        self._speed = share * self._largest[0]
+
+    def decide(self, state: WalkingState) -> Decision:
+        """Return the command that leads straight to the goal."""
+        begin = perf_counter()
+        goal = self._goals.for_state(state)
+        away = turned(np.array([goal.x, goal.y]) - state.com[:2], np.asarray(-state.yaw))
+        turn = float(wrapped(np.asarray(goal.yaw - state.yaw)))
+        distance = float(np.hypot(*away))
+        if distance <= goal.distance and abs(turn) <= goal.angle:
+            nothing = np.zeros(3)
+            return Decision("arrived", nothing, None, perf_counter() - begin, self._goals.number)
+        speed = min(self._speed, APPROACH * distance)
+        command = np.append(away / max(distance, 1e-9) * speed, TURNING * turn)
+        command = np.clip(command, -self._largest, self._largest)
+        return Decision("go", command, None, perf_counter() - begin, self._goals.number)
+
+
+APPROACH, TURNING = 1.0, 1.0
+"""Speed per distance left, and turning rate per angle left, of a robot without a map [1/s]."""
+
+
+class _Goals:
+    """Goals that are walked to in turn.
+
+    Attributes:
+        number: index of the one that is walked to.
+    """
+
+    def __init__(self, goals: Sequence[Goal]) -> None:
+        self._goals = list(goals)
+        self.number = 0
+
+    def for_state(self, state: WalkingState) -> Goal:
+        """Return the goal to walk to, the next one where that before is reached."""
+        while self.number < len(self._goals) - 1 and self._goals[self.number].is_met_by(state):
+            self.number += 1
+        return self._goals[self.number]

@@ -1,0 +1,181 @@
+"""Courses that a quadruped crosses: stairs, gaps, stepping stones (Taouil's thesis, chapter 5)."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.footsteps import Goal
+from jaxleas.terrain import Area, Scene
+from jaxleas.types import InputError
+
+HALF_WIDTH = 1.0
+"""Half width of a course [m]."""
+RUN_UP = 1.0
+"""Distance from the place of the start to the first edge [m], as in the thesis's logs."""
+BEHIND = 0.8
+"""Ground behind the place of the start, and beyond that of the goal [m]."""
+BLOCK_HEIGHT = 0.18
+"""Height of blocks above the ground between them [m] (thesis, section 5.2)."""
+STEPS = 12
+"""Number of steps up, and down (thesis, section 5.2)."""
+AWAY = (0.10, 0.05, float(np.radians(5.0)))
+"""How far a start may be from its place: along, across [m], heading [rad]."""
+Start = tuple[float, float, float]
+"""x, y [m], heading [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Terrain with a way across it.
+
+    Attributes:
+        name: name of the course.
+        scene: terrain.
+        goals: poses to reach in turn.
+    """
+
+    name: str
+    scene: Scene
+    goals: tuple[Goal, ...]
+
+    def starts(self, count: int, seed: int) -> list[Start]:
+        """Return starts around the origin, drawn evenly within `AWAY`.
+
+        Args:
+            count: number of starts.
+            seed: seed of the draws.
+        """
+        drawn = np.random.default_rng(seed).uniform(-1.0, 1.0, (count, 3)) * np.array(AWAY)
+        return [(float(x), float(y), float(yaw)) for x, y, yaw in drawn]
+
+
+def stairs(name: str, riser: float, tread: float) -> Course:
+    """Return twelve steps up and twelve down, with a landing between.
+
+    Args:
+        name: name of the course.
+        riser: height of a step [m].
+        tread: depth of a step [m].
+    """
+    heights = [riser * step for step in range(1, STEPS + 1)]
+    edges = [RUN_UP + tread * step for step in range(STEPS)]
+    top = (edges[-1], edges[-1] + LANDING)
+    flights = {"start": ((-BEHIND, RUN_UP), 0.0), "landing": (top, heights[-1])}
+    for step, (edge, height) in enumerate(zip(edges[:-1], heights[:-1], strict=True)):
+        begin = top[1] + tread * (STEPS - 2 - step)
+        flights[f"up_{step}"] = ((edge, edge + tread), height)
+        flights[f"down_{step}"] = ((begin, begin + tread), height)
+    foot = top[1] + tread * (STEPS - 1)
+    flights["goal"] = ((foot, foot + 2.0 * BEHIND), 0.0)
+    return Course(name, _strips(flights), (_goal(foot + BEHIND),))
+
+
+LANDING = 1.0
+"""Length of the landing between two stairs [m]."""
+
+
+def gaps(name: str, widths: Sequence[float], seed: int) -> Course:
+    """Return blocks with gaps between them; the ground is 18 cm lower.
+
+    Args:
+        name: name of the course.
+        widths: width of each gap [m].
+        seed: seed of the lengths of the blocks between, 0.6 to 1.0 m.
+    """
+    lengths = np.random.default_rng(seed).uniform(*BLOCK_LENGTHS, len(widths) - 1)
+    begin, blocks = RUN_UP, {"start": ((-BEHIND, RUN_UP), 0.0)}
+    for number, (width, length) in enumerate(zip(widths, [*lengths, 2.0 * BEHIND], strict=True)):
+        begin += width
+        blocks[f"block_{number}"] = ((begin, begin + length), 0.0)
+        begin += length
+    blocks["ground"] = ((-BEHIND, begin), -BLOCK_HEIGHT)
+    return Course(name, _strips(blocks), (_goal(begin - BEHIND),))
+
+
+BLOCK_LENGTHS = (0.6, 1.0)
+
+
+def stones(name: str, seed: int) -> Course:
+    """Return rows of stepping stones of 30 to 40 cm, 4 to 8 cm apart, over 3 m.
+
+    Args:
+        name: name of the course.
+        seed: seed of sizes and places.
+    """
+    rng = np.random.default_rng(seed)
+    far = RUN_UP + STONES_LONG
+    surfaces = {"start": _rectangle((-BEHIND, RUN_UP, -HALF_WIDTH, HALF_WIDTH), 0.0)}
+    begin = RUN_UP + rng.uniform(*STONE_GAPS)
+    while begin < far:
+        length = rng.uniform(*STONE_SIZES)
+        across = -HALF_WIDTH - rng.uniform(0.0, STONE_SIZES[0])
+        while across < HALF_WIDTH:
+            width = rng.uniform(*STONE_SIZES)
+            area = (begin, begin + length, across, across + width)
+            surfaces[f"stone_{len(surfaces)}"] = _rectangle(area, 0.0)
+            across += width + rng.uniform(*STONE_GAPS)
+        begin += length + rng.uniform(*STONE_GAPS)
+    end = begin + 2.0 * BEHIND
+    surfaces["goal"] = _rectangle((begin, end, -HALF_WIDTH, HALF_WIDTH), 0.0)
+    low = (-BEHIND, end, -HALF_WIDTH - STONE_SIZES[1], HALF_WIDTH + STONE_SIZES[1])
+    surfaces["ground"] = _rectangle(low, -BLOCK_HEIGHT)
+    return Course(name, Scene(surfaces), (_goal(begin + BEHIND),))
+
+
+STONES_LONG, STONE_SIZES, STONE_GAPS = 3.0, (0.30, 0.40), (0.04, 0.08)
+
+
+_THESIS_1 = (0.07, 0.075, 0.08, 0.085, 0.09)
+_THESIS_2 = tuple(np.random.default_rng(0).uniform(0.015, 0.071, 14).tolist())
+COURSES: Mapping[str, Callable[[], Course]] = MappingProxyType(
+    {
+        "stairs_1": lambda: stairs("stairs_1", 0.042, 1.0 / 3.0),
+        "stairs_2": lambda: stairs("stairs_2", 0.042, 0.25),
+        "stairs_3": lambda: stairs("stairs_3", 0.05, 0.20),
+        "gaps_1": lambda: gaps("gaps_1", _THESIS_1, seed=1),
+        "gaps_2": lambda: gaps("gaps_2", _THESIS_2, seed=2),
+        "gaps_12cm": lambda: gaps("gaps_12cm", (0.12,) * 5, seed=3),
+        "gaps_16cm": lambda: gaps("gaps_16cm", (0.16,) * 5, seed=4),
+        "gaps_20cm": lambda: gaps("gaps_20cm", (0.20,) * 5, seed=5),
+        "stones": lambda: stones("stones", seed=6),
+    }
+)
+"""Stairs are those of the thesis's scenarios 1.1 to 1.3. Of gaps it gives widths, not places."""
+
+
+def make_course(name: str) -> Course:
+    """Return a course by its name.
+
+    Raises:
+        InputError: there is no such course.
+    """
+    if name not in COURSES:
+        raise InputError(f"there is no course {name!r}, only {', '.join(COURSES)}")
+    return COURSES[name]()
+
+
+def _strips(strips: Mapping[str, tuple[tuple[float, float], float]]) -> Scene:
+    """Return level strips across the course, each from one x to another at a height."""
+    return Scene(
+        {
+            name: _rectangle((begin, end, -HALF_WIDTH, HALF_WIDTH), height)
+            for name, ((begin, end), height) in strips.items()
+        }
+    )
+
+
+def _rectangle(area: Area, height: float) -> Float[np.ndarray, "4 3"]:
+    x_min, x_max, y_min, y_max = area
+    flat = [[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]]
+    return np.column_stack([flat, np.full(4, height)])
+
+
+def _goal(x: float, y: float = 0.0) -> Goal:
+    return Goal(x, y, 0.0, speed=STOPS)
+
+
+STOPS = 0.25
+"""Speed from which a robot stops within a few centimetres [m/s]."""

@@ -1,0 +1,203 @@
+"""The function behind `jaxleas gait walk`."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxleas.configuration import Allow
+from jaxleas.controllers import (
+    DEFAULT_CONTROLLER,
+    TICK,
+    Controller,
+    ControllerName,
+    Ticked,
+    Walk,
+    find_controller,
+)
+from jaxleas.crossing.commanders import BlindCommander, Commander, PlanningCommander
+from jaxleas.crossing.courses import STOPS
+from jaxleas.crossing.crossing import cross
+from jaxleas.crossing.ground_start import measured_at_start, standing_on
+from jaxleas.crossing.in_words import in_words
+from jaxleas.crossing.seen_map import MapErrors
+from jaxleas.crossing.tally import tally
+from jaxleas.crossing.walk_log import (
+    WalkDescription,
+    WalkLogger,
+    footstep_arrays,
+    write_walk_log,
+)
+from jaxleas.crossing.walk_settings import WalkSettings
+from jaxleas.crossing.waypoints import read_waypoints
+from jaxleas.footsteps import (
+    FootCostMap,
+    FootstepPlanner,
+    Goal,
+    MotionModel,
+    buffer_of,
+    read_motion_model,
+    require_goal,
+    require_start,
+    shipped_model,
+)
+from jaxleas.physics import DEFAULT_BODY, load_body, make_physics
+from jaxleas.runs import Progress, collect_provenance
+from jaxleas.terrain import (
+    READING,
+    HeightMap,
+    Reading,
+    Scene,
+    SceneEdges,
+    has_polygons,
+    import_terrain,
+    load_scene,
+)
+from jaxleas.types import InputError
+
+CELL = 0.01
+"""Edge of a cell of polygons where none is stated [m]."""
+
+
+def walk(
+    *,
+    terrain: Path,
+    goal: str,
+    start: str = "0,0,0",
+    controller: ControllerName = DEFAULT_CONTROLLER,
+    robot: str = DEFAULT_BODY,
+    models: Path | None = None,
+    waypoints: Path | None = None,
+    blind: float | None = None,
+    log: Path | None = None,
+    settings: WalkSettings = WalkSettings(),  # noqa: B008  # its fields are options
+    errors: MapErrors = MapErrors(),  # noqa: B008
+    reading: Reading = READING,
+    allow: Allow = (),
+) -> None:
+    """Walk a quadruped to a goal in physics, with its footsteps planned at each contact.
+
+    It ends at the goal (5 cm and 5 degrees), where no command is safe, with a fall, or when its
+    time is over; Ctrl-C ends it, too. What was logged is kept.
+
+    Args:
+        terrain: scene or mesh, or a map whose surfaces are found; docs/files.md lists all kinds.
+        goal: pose of the centre of mass to reach: X,Y or X,Y,YAW [m, rad].
+        start: pose in which the robot stands at first: X,Y or X,Y,YAW [m, rad].
+        controller: controller that walks.
+        robot: robot that walks, or its MJCF file (.xml).
+        models: motion models of the controller; by default those of the package.
+        waypoints: guide path that leads to the goal, as jaxleas navigate writes it.
+        blind: speed over the largest at which the robot goes straight to the goal, without a map.
+        log: file for state and torques of every physics step (.npz).
+        settings: how the robot is walked.
+        errors: how the robot's map differs from the terrain.
+        reading: what the terrain file does not state itself.
+        allow: controller of your own that may be run, as MODULE:CLASS.
+    """
+    if log is not None and log.suffix != ".npz":
+        raise InputError(f"{log}: the name of a log must end in .npz")
+    body = load_body(robot)
+    walker = find_controller(controller, body, (controller, *allow))
+    scene = load_scene(
+        terrain, replace(reading, resolution=None) if has_polygons(terrain) else reading
+    )
+    goals = [] if waypoints is None else read_waypoints(waypoints)
+    goals.append(pose_goal(goal, "--goal"))
+    place = pose_goal(start, "--start")
+    stands = standing_on(scene, body, [(place.x, place.y, place.yaw)])
+    physics = Walk(make_physics(body, 1, scene), walker)
+    if blind is None:
+        height_map = errors.of(_map_of(terrain, reading))
+        model = _model(models, walker)
+        costs = _costs(model, height_map, goals, settings)
+        require_start(measured_at_start(physics, stands), costs, walker.identity)
+        planner = FootstepPlanner(model, costs, settings.search)
+        commander: Commander = PlanningCommander(planner, goals)
+    else:
+        commander = BlindCommander(walker.identity, goals, blind)
+    logger = WalkLogger(physics)
+    with Progress(round(settings.seconds / TICK)) as progress:
+        seen = _Shown(progress, logger)
+        (crossing,) = cross(physics, stands, [commander], settings.seconds, seen)
+    counts = tally(crossing, SceneEdges.of(scene), walker.identity)
+    print(in_words(crossing, goals[-1]), counts.in_words(), sep="\n")
+    if log is not None:
+        chosen = {
+            **{"terrain": str(terrain), "goal": goal, "start": start, "blind": blind},
+            **{"settings": asdict(settings), "map": asdict(errors)},
+        }
+        outcome = {"outcome": crossing.outcome, "time": crossing.time, "cause": crossing.cause}
+        description = WalkDescription(
+            *(walker.identity, body.time_step, round(TICK / body.time_step), outcome, chosen),
+            provenance=collect_provenance(sys.argv)[0],
+        )
+        write_walk_log(log, logger.made(footstep_arrays(crossing.footsteps), description))
+        print(f"log written to {log}")
+
+
+class _Shown:
+    """Shows the progress of a walk, and logs it."""
+
+    def __init__(self, progress: Progress, logger: WalkLogger) -> None:
+        self._progress, self._logger, self._ticks = progress, logger, 0
+
+    def __call__(self, ticked: Ticked, command: Float[np.ndarray, "N 3"]) -> None:
+        self._logger(ticked, command)
+        self._ticks += 1
+        if self._ticks % _SHOWN == 0:
+            x, y, _ = ticked.walking.sensed.com[0]
+            self._progress.update(self._ticks, {"at": f"{x:.2f}, {y:.2f}"})
+
+
+_SHOWN = 25
+"""Ticks between two updates of the progress."""
+
+
+def pose_goal(text: str, option: str) -> Goal:
+    """Return the pose that X,Y or X,Y,YAW names, at which a robot stops."""
+    try:
+        numbers = [float(each) for each in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
+        raise InputError(f"{option} is '{text}'; give X,Y or X,Y,YAW in metres and radians: 2,0,0")
+    if len(numbers) == 3:
+        return Goal(*numbers, speed=STOPS)
+    return Goal(*numbers, angle=float(np.pi), speed=STOPS)
+
+
+def _scene_of(terrain: Path, reading: Reading) -> Scene:
+    """Return the terrain as polygons; cells are those of the robot's map alone."""
+    if has_polygons(terrain):
+        reading = replace(reading, resolution=None)
+    return load_scene(terrain, reading)
+
+
+def _map_of(terrain: Path, reading: Reading) -> HeightMap:
+    if reading.resolution is None and has_polygons(terrain):
+        reading = replace(reading, resolution=CELL)
+    return import_terrain(terrain, reading)
+
+
+def _model(models: Path | None, walker: Controller) -> MotionModel:
+    """Return motion models of the controller that walks."""
+    if models is None:
+        return shipped_model(walker.identity)
+    model = read_motion_model(models)
+    walker.identity.require_same(model.controller, str(models), "the walk")
+    return model
+
+
+def _costs(
+    model: MotionModel, height_map: HeightMap, goals: Sequence[Goal], settings: WalkSettings
+) -> FootCostMap:
+    """Return the foot cost map of the robot's map, on which all goals are."""
+    buffer = buffer_of(model) if settings.buffer is None else settings.buffer
+    costs = FootCostMap.of(height_map, buffer)
+    for goal in goals:
+        require_goal(goal, costs)
+    return costs

@@ -1,0 +1,58 @@
+"""How a robot is walked across terrain: its search, its map, and the time it gets."""
+
+from dataclasses import dataclass
+
+from jaxleas.footsteps import WIDTH, SearchSettings
+from jaxleas.types import InputError
+
+
+@dataclass(frozen=True)
+class WalkSettings:
+    """How a robot is walked to a goal.
+
+    Attributes:
+        horizon: number of footsteps that are planned at each contact.
+        clearance: footsteps that a landing 1 m nearer to an edge than 7 cm is worth.
+        buffer: distance of a foot's centre from edges [m]; by default its radius and the 95 %
+            quantile of the error of its prediction.
+        fastest: largest speed that is commanded, over the controller's largest.
+        climbing: the same where a foot steps up or down.
+        jump: largest change of the command between footsteps, its parts over the controller's
+            largest, in sum.
+        doubt: what each planned footstep before adds to the buffer of a landing [m].
+        seconds: time after which the walk ends [s].
+    """
+
+    horizon: int = 4
+    clearance: float = 10.0
+    buffer: float | None = None
+    fastest: float = 1.0
+    climbing: float = 0.7
+    jump: float = 1.0
+    doubt: float = 0.005
+    seconds: float = 120.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.seconds <= LONGEST:
+            raise InputError(
+                f"a walk of {self.seconds:g} s: give more than 0 s, and at most {LONGEST:g} s"
+            )
+        if self.buffer is not None and not self.buffer >= 0.0:
+            raise InputError(f"the buffer of a foot is {self.buffer:g} m: give at least 0 m")
+
+    @property
+    def search(self) -> SearchSettings:
+        """How commands are searched: exactly up to a horizon of two."""
+        return SearchSettings(
+            horizon=self.horizon,
+            clearance=self.clearance,
+            width=None if self.horizon <= 2 else WIDTH,
+            fastest=self.fastest,
+            climbing=self.climbing,
+            jump=self.jump,
+            doubt=self.doubt,
+        )
+
+
+LONGEST = 3600.0
+"""Longest walk: what is logged of it takes a gigabyte [s]."""

@@ -1,0 +1,130 @@
+"""`jaxleas gait walk`: to the goal, to an abyss, into a fall; logs that plain MuJoCo repeats."""
+
+import json
+
+import numpy as np
+import pytest
+
+from jaxleas import cli
+from jaxleas.crossing import read_walk_log
+from jaxleas.files import read_npz, write_npz
+from jaxleas.footsteps import read_motion_model, shipped_model, write_motion_model
+from jaxleas.terrain import Scene, write_scene
+from jaxleas.types import InputError
+from tests.terrain.test_scene_edges import rectangle
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """A floor that ends at x = 1.2 m."""
+    file = tmp_path_factory.mktemp("walk") / "floor.json"
+    write_scene(file, Scene({"floor": rectangle(-1.2, 1.2, -1.0, 1.0)}))
+    return file
+
+
+def walk(scene, *options):
+    cli.run(["gait", "walk", "--terrain", str(scene), *options])
+
+
+@pytest.fixture(scope="module")
+def log(scene):
+    """The log of a walk to a goal half a metre ahead and 10 cm aside."""
+    file = scene.parent / "walk.npz"
+    walk(scene, "--goal", "0.5,0.1,0", "--log", str(file), "--horizon", "2")
+    return file
+
+
+def test_it_stands_at_the_goal(log):
+    made = read_walk_log(log)
+    assert made.description.outcome["outcome"] == "reached"
+    com = made.footsteps["footstep_com"][-1]
+    assert np.hypot(com[0] - 0.5, com[1] - 0.1) < 0.06
+    assert made.description.controller.name == "trot"
+    assert (made.footsteps["footstep_pair"] == made.footsteps["footstep_expected"]).all()
+    landed = np.linalg.norm(
+        made.footsteps["footstep_planned"] - made.footsteps["footstep_feet"], axis=2
+    )
+    assert np.nanmedian(landed) < 0.05
+    assert (made.command[-1] == 0.0).all()
+
+
+def test_plain_mujoco_repeats_a_log(log):
+    """Nothing of ours takes part: NumPy reads the file, MuJoCo walks."""
+    mujoco = pytest.importorskip("mujoco")
+    with np.load(log) as file:
+        arrays = dict(file)
+    metadata = json.loads(str(arrays["metadata"]))
+    model = mujoco.MjModel.from_xml_string(str(arrays["mjcf"]))
+    assert model.opt.timestep == metadata["time_step"]
+    data = mujoco.MjData(model)
+    data.time = arrays["time"][0]
+    data.qpos[:], data.qvel[:] = arrays["coordinates"][0], arrays["speeds"][0]
+    for step, torques in enumerate(arrays["torques"]):
+        if step % metadata["steps_per_tick"] == 0:
+            data.qacc_warmstart[:] = 0.0
+        data.ctrl[:] = torques
+        mujoco.mj_step(model, data)
+        np.testing.assert_array_equal(data.qpos, arrays["coordinates"][step + 1])
+        np.testing.assert_array_equal(data.qvel, arrays["speeds"][step + 1])
+    assert data.qpos[0] > 0.4
+
+
+def test_a_fall_is_said_and_its_log_kept(scene, tmp_path, capsys):
+    file = tmp_path / "fall.npz"
+    walk(scene, *("--goal", "1.1,0", "--start", "0.6,0", "--blind", "0.8", "--log", str(file)))
+    assert "fell at (" in capsys.readouterr().out
+    outcome = read_walk_log(file).description.outcome
+    assert outcome["outcome"] == "fell"
+    assert outcome["cause"] in ("tilted", "low")
+    assert len(read_walk_log(file).torques) > 100
+
+
+def test_where_no_command_is_safe_it_stands_and_says_why(tmp_path, capsys):
+    islands = {"start": rectangle(-1.0, 0.6, -1.0, 1.0), "goal": rectangle(1.4, 3.0, -1.0, 1.0)}
+    write_scene(tmp_path / "islands.json", Scene(islands))
+    options = ("--goal", "2.2,0,0", "--start", "0.15,0,0", "--horizon", "2", "--seconds", "12")
+    walk(tmp_path / "islands.json", *options)
+    said = capsys.readouterr().out
+    assert said.startswith(("no path: it stands at", "its time was over at (0."))
+    assert "landings less than 1.5 cm from an edge: LF 0 of" in said
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--goal", "9,0"), r"the goal \(9, 0\) is outside the map, which has x from"),
+        (("--goal", "there"), "--goal is 'there'; give X,Y or X,Y,YAW"),
+        (("--goal", "1,0", "--start", "1.0,0"), "no ground under foot LF"),
+        (("--goal", "1,0", "--start", "0.8,0"), r"foot LF starts on an unsafe cell at .*nearest"),
+        (("--goal", "1,0", "--log", "walk.zip"), "walk.zip: the name of a log must end in .npz"),
+        (("--goal", "1,0", "--controller", "trot_quick"), "no motion models of controller trot_q"),
+        (("--goal", "1,0", "--seconds", "0"), "a walk of 0 s: give more than 0 s"),
+        (("--goal", "1,0", "--shift", "-1"), "shift -1 m"),
+        (("--goal", "1,0", "--blind", "0"), "blind"),
+    ],
+)
+def test_what_cannot_be_walked_is_refused(scene, options, message):
+    with pytest.raises(InputError, match=message):
+        walk(scene, *options)
+
+
+def test_models_of_another_controller_are_refused(scene, tmp_path):
+    from dataclasses import replace
+
+    from jaxleas.controllers import find_controller
+    from jaxleas.physics import load_body
+
+    model = shipped_model(find_controller("trot", load_body("anymal_b")).identity)
+    other = replace(model, controller=replace(model.controller, swing_height=0.1))
+    write_motion_model(tmp_path / "other.npz", other)
+    assert read_motion_model(tmp_path / "other.npz").controller.swing_height == 0.1
+    with pytest.raises(InputError, match=r"other.npz is of another controller .*swing_height: 0.1"):
+        walk(scene, "--goal", "1,0", "--models", str(tmp_path / "other.npz"))
+
+
+def test_a_cut_log_is_refused(log, tmp_path):
+    arrays = read_npz(log, ())
+    arrays["speeds"] = arrays["speeds"][:-1]
+    write_npz(tmp_path / "cut.npz", **arrays)
+    with pytest.raises(InputError, match=r"cut.npz: speeds has \d+ rows; \d+ physics steps have"):
+        read_walk_log(tmp_path / "cut.npz")
