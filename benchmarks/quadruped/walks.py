@@ -27,6 +27,8 @@ CELL, COARSE = 0.01, 0.02
 """Edge of a cell of the true map, and of the noisy one [m]."""
 NOISE, SHIFT = 0.01, 0.02
 """Errors of the noisy map [m]."""
+SECONDS = 60.0
+"""Time that a robot gets for a course [s]."""
 CONTROLLER, BODY = "trot", "anymal_b"
 
 
@@ -76,7 +78,7 @@ def crossed(course: Course, count: int, seed: int, noisy: bool = False) -> Cross
     commanders = [
         PlanningCommander(planners[robot % len(planners)], course.goals) for robot in range(count)
     ]
-    return _judged(course, walk, cross(walk, start, commanders, settings.seconds))
+    return _judged(course, walk, cross(walk, start, commanders, SECONDS))
 
 
 def crossed_blind(course: Course, count: int, seed: int, shares: Sequence[float]) -> Crossed:
@@ -95,7 +97,7 @@ def crossed_blind(course: Course, count: int, seed: int, shares: Sequence[float]
         for share in shares
         for _ in range(count)
     ]
-    return _judged(course, walk, cross(walk, start, commanders, WalkSettings().seconds))
+    return _judged(course, walk, cross(walk, start, commanders, SECONDS))
 
 
 def _walk(course: Course, starts: Sequence[tuple[float, float, float]]) -> tuple[Walk, BodyState]:
