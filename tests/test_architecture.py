@@ -56,7 +56,7 @@ def imported_rooms(source: str, package: list[str]) -> Iterator[str]:
 
 
 # Rooms within a room, each with a face of its own.
-INNER_ROOMS = ("jaxleas.envs.steering",)
+INNER_ROOMS = ("jaxleas.envs.steering", "jaxleas.envs.gait_planning")
 
 
 def past_the_face(source: str, package: list[str]) -> list[str]:
@@ -120,7 +120,12 @@ def face_of(module: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    "room", [*sorted({room_of(path) for path in FILES if path.parent != ROOT}), "envs.steering"]
+    "room",
+    [
+        *sorted({room_of(path) for path in FILES if path.parent != ROOT}),
+        "envs.steering",
+        "envs.gait_planning",
+    ],
 )
 def test_what_a_face_names_exists_and_hides_no_file(room: str) -> None:
     module = importlib.import_module(f"jaxleas.{room}")

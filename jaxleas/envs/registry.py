@@ -14,5 +14,10 @@ PAGES: Registry[Any] = Registry("page of a task", {"steering": "jaxleas.viewer.w
 """Pages on which a task's exported policy runs in a browser, without a server."""
 
 TASKS: Registry[type[Task]] = Registry(
-    "task", {"steering": "jaxleas.envs.steering.task:Steering"}, require_task
+    "task",
+    {
+        "steering": "jaxleas.envs.steering.task:Steering",
+        "gait_planning": "jaxleas.envs.gait_planning.task:GaitPlanning",
+    },
+    require_task,
 )

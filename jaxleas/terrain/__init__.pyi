@@ -9,6 +9,10 @@ from .edges import Edges as Edges
 from .edges import EdgeSearch as EdgeSearch
 from .edges import find_edges as find_edges
 from .edges_jax import edge_distances as edge_distances
+from .fields.config import FieldConfig as FieldConfig
+from .fields.field import FIELD_KINDS as FIELD_KINDS
+from .fields.field import FieldKind as FieldKind
+from .fields.field import draw_field as draw_field
 from .generator import Arena as Arena
 from .generator import generate_arena as generate_arena
 from .height_map import HeightMap as HeightMap

@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from jaxleas.dynamics import (
+    LEAST_MARGIN,
     BoundaryState,
     Discretisation,
     Ended,
@@ -18,6 +19,7 @@ from jaxleas.dynamics import (
     Reach,
     Transitions,
     assemble,
+    decide_transitions,
     margins_by_definition,
     solve_in_jax,
     solve_transitions,
@@ -82,10 +84,12 @@ def test_the_compiled_loops_are_right_before_they_are_compiled():
     pytest.importorskip("numba")
     code = (
         "import json\n"
-        "from jaxleas.dynamics import solve_transitions\n"
+        "from jaxleas.dynamics import decide_transitions, solve_transitions\n"
         "from tests.dynamics.transitions import random_transitions\n"
         "found = solve_transitions(random_transitions(3, seed=1), None, 'compiled')\n"
-        "print(json.dumps([found.margin.tolist(), found.ended.tolist()]))\n"
+        "decided = decide_transitions(random_transitions(3, seed=1), 1e-3, None, 'compiled')\n"
+        "answers = [found.margin, found.ended, decided.feasible(), decided.ended]\n"
+        "print(json.dumps([each.tolist() for each in answers]))\n"
     )
     answer = subprocess.run(
         [sys.executable, "-c", code],
@@ -95,10 +99,29 @@ def test_the_compiled_loops_are_right_before_they_are_compiled():
         timeout=300,
     )
     assert answer.returncode == 0, answer.stderr
-    found, ended = json.loads(answer.stdout.splitlines()[-1])
+    found, ended, feasible, decided = json.loads(answer.stdout.splitlines()[-1])
     assert ended == [Ended.CONVERGED] * 3
+    assert feasible == [margin >= LEAST_MARGIN for margin in found]
+    assert decided == [Ended.DECIDED] * 3
     expected = margins_by_definition(random_transitions(3, seed=1))
     np.testing.assert_allclose(found, expected, atol=KNOWN)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("least", [-0.2, LEAST_MARGIN, 0.1])
+def test_a_search_that_stops_at_its_proof_says_the_same(least):
+    pytest.importorskip("numba")
+    many = random_transitions(400, seed=5)
+    whole = solve_transitions(many, None, "compiled")
+    decided = decide_transitions(many, least, None, "compiled")
+    known = (whole.ended == Ended.CONVERGED) & (np.abs(whole.margin - least) > KNOWN)
+    assert known.mean() > 0.98
+    assert (decided.feasible(least) == whole.feasible(least))[known].all()
+    stopped = decided.ended == Ended.DECIDED
+    assert stopped.mean() > 0.5
+    assert decided.iterations.mean() < 0.8 * whole.iterations.mean()
+    # What is accepted reaches its margin; what is refused has a larger one somewhere below.
+    assert (decided.margin <= whole.margin + KNOWN)[stopped & known].all()
 
 
 def test_more_instants_never_help(transitions):

@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from types import ModuleType
@@ -16,12 +17,16 @@ from jaxleas.types import InputError
 _PIECE = 64  # programs of one task of a thread
 
 
-def solve_on_host(programs: Programs, threads: int | None = None) -> Solutions:
+def solve_on_host(
+    programs: Programs, threads: int | None = None, asked: float = math.nan
+) -> Solutions:
     """Return the largest margin of each program.
 
     Args:
         programs: programs in NumPy arrays, of any batch shape.
         threads: number of threads; None for one on each core.
+        asked: margin of which it is only asked whether it can be reached, which takes fewer
+            iterations; NaN for the largest margin.
 
     Raises:
         InputError: numba is not installed.
@@ -37,7 +42,7 @@ def solve_on_host(programs: Programs, threads: int | None = None) -> Solutions:
         np.zeros(count, np.int32),
         np.zeros(count, np.int32),
     )
-    _solve_in_pieces(arrays, answers, threads or available_cores())
+    _solve_in_pieces(arrays, answers, threads or available_cores(), asked)
     margin = np.where(answers.ended == Ended.UNSUPPORTED, -np.inf, answers.margin)
     whole = (margin, answers.free_point + origin, *answers[2:])
     return Solutions(*(array.reshape(*batch, *array.shape[1:]) for array in whole))
@@ -54,7 +59,9 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if is_known else os.cpu_count() or 1
 
 
-def _solve_in_pieces(arrays: list[np.ndarray], answers: Solutions, threads: int) -> None:
+def _solve_in_pieces(
+    arrays: list[np.ndarray], answers: Solutions, threads: int, asked: float
+) -> None:
     kernel = _kernel("kernel_batch")
     problem = _kernel("kernel_newton").Problem
 
@@ -65,6 +72,7 @@ def _solve_in_pieces(arrays: list[np.ndarray], answers: Solutions, threads: int)
             problem(*fields[:3], 0.0, *fields[3:]),
             limits,
             kernel.Answers(*(array[piece] for array in answers)),
+            asked,
         )
 
     pieces = [slice(k, k + _PIECE) for k in range(0, len(answers.margin), _PIECE)]

@@ -25,11 +25,13 @@ from jaxleas.dynamics.croc.solution import (
     RESIDUAL,
     ROOM,
     TOLERANCE,
+    UNBOUNDED,
     WORSE,
     Ended,
 )
 
 _CONVERGED = int(Ended.CONVERGED)
+_DECIDED = int(Ended.DECIDED)
 _NOT_CONVERGED = int(Ended.NOT_CONVERGED)
 _UNSUPPORTED = int(Ended.UNSUPPORTED)
 
@@ -47,11 +49,19 @@ class State(NamedTuple):
     change: np.ndarray
     dual_change: np.ndarray
     target: np.ndarray
+    dual_error: np.ndarray  # [1]; share of the first duals' error that is left
 
 
 @compiled
-def solve(problem: Problem, newton: Newton, state: State) -> tuple[int, int]:
-    """Leave the answer in the state; return how the search ended, and its iterations."""
+def solve(problem: Problem, newton: Newton, state: State, asked: float) -> tuple[int, int]:
+    """Leave the answer in the state; return how the search ended, and its iterations.
+
+    Args:
+        problem: program.
+        newton: room for its factors.
+        state: room for its iterates.
+        asked: margin of which it is only asked whether it can be reached; NaN for the largest.
+    """
     if not _begin(problem, newton, state):
         return _UNSUPPORTED, 0
     slack, dual, target = state.slack, state.dual, state.target
@@ -60,7 +70,12 @@ def solve(problem: Problem, newton: Newton, state: State) -> tuple[int, int]:
     for i in range(len(dual)):
         count += dual[i] > 0.0
     iterations = 0
+    state.dual_error[0] = 1.0
+    is_decided = False
     while gap >= TOLERANCE and iterations < MOST_ITERATIONS:
+        is_decided = _is_decided(state, gap, asked)
+        if is_decided:
+            break
         for i in range(len(slack)):
             state.inverse[i] = 1.0 / slack[i]
             state.weight[i] = dual[i] * state.inverse[i]
@@ -81,8 +96,21 @@ def solve(problem: Problem, newton: Newton, state: State) -> tuple[int, int]:
             break
         gap = next_gap
     error = _weigh(problem, state)
+    if is_decided and error < RESIDUAL:
+        return _DECIDED, iterations
     is_right = gap < CLOSE and error < RESIDUAL
     return (_CONVERGED if is_right else _NOT_CONVERGED), iterations
+
+
+@compiled
+def _is_decided(state: State, gap: float, asked: float) -> bool:
+    """Return whether an iterate proves that a margin can, or cannot, be reached.
+
+    Iterates are feasible, so that theirs is; and once the duals are, too, the gap bounds all.
+    """
+    if state.x[3] > asked + CLOSE:
+        return True
+    return state.dual_error[0] < UNBOUNDED and state.x[3] + gap < asked - CLOSE
 
 
 @compiled
@@ -243,6 +271,7 @@ def _advance(newton: Newton, state: State, gap: float) -> float:
         dual = max(dual, -moved / (z if z > 0.0 else 1.0))
     share = BOLD if gap < NEAR else CAUTIOUS
     primal, dual = share / max(share, primal), share / max(share, dual)
+    state.dual_error[0] *= 1.0 - dual
     left = 0.0
     for i in range(len(state.slack)):
         state.slack[i] += primal * state.change[i]

@@ -20,13 +20,14 @@ class Answers(NamedTuple):
 
 
 @compiled
-def solve_all(batch: Problem, limits: np.ndarray, answers: Answers) -> None:
+def solve_all(batch: Problem, limits: np.ndarray, answers: Answers, asked: float) -> None:
     """Solve programs and write their answers.
 
     Args:
         batch: programs, whose arrays have a leading axis, but for the limit.
         limits: largest normal force of each program.
         answers: arrays to write.
+        asked: margin of which it is only asked whether it can be reached; NaN for the largest.
     """
     phases, instants = batch.push_share.shape[1:]
     points, faces = batch.faces.shape[2:4]
@@ -53,6 +54,7 @@ def solve_all(batch: Problem, limits: np.ndarray, answers: Answers) -> None:
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
+        np.zeros(1),
     )
     for n in range(len(limits)):
         problem = Problem(
@@ -71,7 +73,7 @@ def solve_all(batch: Problem, limits: np.ndarray, answers: Answers) -> None:
             batch.acceleration_share[n],
             batch.acceleration_bounds[n],
         )
-        answers.ended[n], answers.iterations[n] = solve(problem, newton, state)
+        answers.ended[n], answers.iterations[n] = solve(problem, newton, state, asked)
         answers.margin[n] = state.x[3]
         answers.free_point[n] = state.x[:3]
         answers.forces[n] = state.forces

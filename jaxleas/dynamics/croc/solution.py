@@ -17,6 +17,7 @@ NARROWEST = 1e-8  # least pivot of a support's wrenches [m^2]: 0.1 mm wide at le
 ROOM = 0.3  # distance of the first margin from the smallest slack [1]
 CAUTIOUS, BOLD = 0.99, 0.999  # share of the way to the boundary: at first, and near the end
 WORSE = 100.0  # a step that makes the gap this many times as large broke down: it is not taken
+UNBOUNDED = 1e-9  # share of the first duals' error below which the gap bounds all margins
 NEAR = 1e-2  # gap from which on steps are bold
 
 
@@ -28,6 +29,8 @@ class Ended(IntEnum):
     """The margin is no verdict: out of iterations, or numbers too large for doubles."""
     UNSUPPORTED = 2
     """A phase stands on nothing, on one point or on a line: no margin exists."""
+    DECIDED = 3
+    """The margin lies on the proven side of the one that was asked for; the largest is unknown."""
 
 
 class Solutions(NamedTuple):
@@ -54,6 +57,6 @@ class Solutions(NamedTuple):
         Args:
             least: least margin of an accepted transition; 0 for the plain linear program.
         """
-        return namespace(self.margin).logical_and(
-            self.ended == Ended.CONVERGED, self.margin >= least
-        )
+        xp = namespace(self.margin)
+        is_known = xp.logical_or(self.ended == Ended.CONVERGED, self.ended == Ended.DECIDED)
+        return xp.logical_and(is_known, self.margin >= least)

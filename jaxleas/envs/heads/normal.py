@@ -39,14 +39,21 @@ class Normal:
         scales: physical scales of its numbers, one after another.
         mirror: image of an action when left and right are swapped: its values may change place and
             sign; None where there is no such symmetry.
+        gain: factor from the network's answer to location and deviation: below 1, an untrained
+            policy stays near the middle of its ranges.
     """
 
     name: str
     scales: tuple[Scale, ...]
     mirror: Mirror | None = None
+    gain: float = 1.0
 
     def __post_init__(self) -> None:
         scales = self.scales
+        if not (math.isfinite(self.gain) and self.gain > 0.0):
+            raise InputError(
+                f"the head {self.name!r} has the gain {self.gain}; give a finite number above 0"
+            )
         if not isinstance(scales, tuple) or not scales or not all(map(callable, scales)):
             raise InputError(
                 f"the head {self.name!r} has the scales {scales!r}; give a tuple of scales, such as"
@@ -86,7 +93,8 @@ class Normal:
     def distribution(self, *logits: Array) -> NormalDistribution:
         """Return location and deviation, which a softplus keeps positive."""
         location, spread = logits
-        return NormalDistribution(location, jax.nn.softplus(spread) + MIN_DEVIATION)
+        deviation = self._amplified(jax.nn.softplus(spread))
+        return NormalDistribution(self._amplified(location), deviation + MIN_DEVIATION)
 
     def sample(self, distribution: NormalDistribution, noise: Array) -> Array:
         """Return a raw action."""
@@ -98,7 +106,7 @@ class Normal:
 
     def mode(self, *logits: Array) -> Array:
         """Return the tanh of the location."""
-        return jnp.tanh(logits[0])
+        return jnp.tanh(self._amplified(logits[0]))
 
     def command(self, action: Array) -> Array:
         """Return an action in physical units."""
@@ -137,6 +145,9 @@ class Normal:
             mirror(distribution.location), mirror.without_signs(distribution.deviation)
         )
 
+    def _amplified(self, answer: Array) -> Array:
+        return answer if self.gain == 1.0 else answer * self.gain
+
     @property
     def _mirror(self) -> Mirror:
         if self.mirror is None:
@@ -145,7 +156,10 @@ class Normal:
 
     def onnx(self, nodes: OnnxNodes, logits: str) -> str:
         """Add tanh and scales; the deviations in the network's answer are left out."""
-        action = nodes.add("Tanh", nodes.columns(logits, 0, self.size))
+        location = nodes.columns(logits, 0, self.size)
+        if self.gain != 1.0:
+            location = nodes.add("Mul", location, nodes.constant(self.gain))
+        action = nodes.add("Tanh", location)
         parts, begin = [], 0
         for scale in self.scales:
             part = nodes.columns(action, begin, begin + scale.size)
