@@ -6,7 +6,7 @@ from jaxleas.envs.gait_planning.config import GaitPlanningConfig
 from jaxleas.envs.gait_planning.ground import Ground
 from jaxleas.envs.gait_planning.phases import PlanningState, bearing, lowest_foothold, rotate
 from jaxleas.envs.gait_planning.reward import foot_offsets
-from jaxleas.envs.gait_planning.signature import HIGHEST, heights_seen
+from jaxleas.envs.gait_planning.signature import HIGHEST, heights_seen, heights_shape
 from jaxleas.envs.gait_planning.supports import in_contact
 
 
@@ -27,9 +27,5 @@ def observation_of(
         "velocity": rotate(-phase.yaw, phase.velocity),
         "feet": foot_offsets(config.robot, phase).reshape(count, -1),
         "contacts": 2.0 * in_contact(phase.support) - 1.0,
-        "heights": heights.clip(-HIGHEST, HIGHEST).reshape(count, *_shape(config)),
+        "heights": heights.clip(-HIGHEST, HIGHEST).reshape(count, *heights_shape(config)),
     }
-
-
-def _shape(config: GaitPlanningConfig) -> tuple[int, ...]:
-    return config.signature().parts[-1].shape

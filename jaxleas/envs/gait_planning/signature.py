@@ -28,17 +28,21 @@ def heights_seen(config: GaitPlanningConfig) -> HeightPoints:
     return light_points(config.robot.nominal_ahead, config.robot.nominal_aside)
 
 
+def heights_shape(config: GaitPlanningConfig) -> tuple[int, ...]:
+    """Return the shape in which a policy sees heights: a vector, or a map."""
+    is_map = config.observation == "published"
+    return (MAP_SIDE, MAP_SIDE) if is_map else (len(heights_seen(config).points),)
+
+
 def signature_of(config: GaitPlanningConfig) -> Signature:
     """Return the signature of a configuration (D table I)."""
-    points, mirror = heights_seen(config)
-    is_map = config.observation == "published"
-    shape = (MAP_SIDE, MAP_SIDE) if is_map else (len(points),)
+    mirror = heights_seen(config).mirror
     parts = (
         Part("attitude", (1,), deviation=math.pi, mirror=Mirror.of_signs([-1.0])),
         Part("velocity", (2,), deviation=SEEN_SPEED, mirror=VECTOR),
         Part("feet", (2 * len(FEET),), deviation=SEEN_FOOT, mirror=FEET_MIRROR),
         Part("contacts", (len(FEET),), mirror=Mirror(SWAPPED, (1.0,) * len(FEET))),
-        Part("heights", shape, deviation=SEEN_HEIGHT, mirror=mirror),
+        Part("heights", heights_shape(config), deviation=SEEN_HEIGHT, mirror=mirror),
     )
     scales = config.action
     numbers = [

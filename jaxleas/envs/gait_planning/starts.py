@@ -2,8 +2,9 @@
 
 from typing import Any
 
+import jax
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 from jaxleas.envs import Starts
 from jaxleas.envs.gait_planning.config import GaitPlanningConfig
@@ -13,6 +14,8 @@ from jaxleas.envs.gait_planning.phases import Phases, PlanningState, lowest_foot
 from jaxleas.envs.gait_planning.quadruped import FEET
 from jaxleas.envs.gait_planning.reach import reach_slack
 
+ROUNDS = 8
+"""Places that are tried for each start."""
 TRIES = 24
 """Places that are tried for each foot."""
 SPREAD = (0.12, 0.08)
@@ -28,6 +31,8 @@ def draw_starts(
 ) -> Starts:
     """Draw starts at rest on four feet, and goals on ground where a foot may stand.
 
+    Each candidate is the first that is valid of several places on its field.
+
     Args:
         config: configuration of the task.
         ground: fields.
@@ -35,7 +40,25 @@ def draw_starts(
         count: number of candidates.
         distance: range of the distance to the goal [m].
     """
-    field = generator.integers(len(ground.kind), size=count)
+    field = np.repeat(generator.integers(len(ground.kind), size=count), ROUNDS)
+    state, valid = _draw_places(config, ground, generator, field, distance)
+    valid = valid.reshape(count, ROUNDS)
+    chosen = ROUNDS * np.arange(count) + valid.argmax(axis=1)
+    picked = jax.tree.map(lambda leaf: leaf[chosen], state)
+    kind = ground.kind[field[chosen]]
+    answer: dict[str, Any] = {"state": picked, "valid": valid.any(axis=1), "group": kind}
+    return Starts(**answer)
+
+
+def _draw_places(
+    config: GaitPlanningConfig,
+    ground: Ground,
+    generator: np.random.Generator,
+    field: Int[np.ndarray, " N"],
+    distance: tuple[float, float],
+) -> tuple[PlanningState, Bool[np.ndarray, " N"]]:
+    """Return a start and a goal on each field, and which are valid."""
+    count = len(field)
     place = generator.uniform(size=(count, 2)) * ground.size
     yaw = generator.uniform(-np.pi, np.pi, count)
     feet, found = _draw_feet(config, ground, generator, (field, place, yaw))
@@ -48,9 +71,8 @@ def draw_starts(
         feet=feet.astype(np.float32),
         support=support,
     )
-    direction = rotate(
-        generator.uniform(-np.pi, np.pi, count), np.tile([1.0, 0.0], (count, 1))[:, None]
-    )[:, 0]
+    bearing = generator.uniform(-np.pi, np.pi, count)
+    direction = np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
     goal = place + direction * generator.uniform(*distance, count)[:, None]
     valid = found & (reach_slack(config.robot, phase) > 0.0) & ground.safe_at(field, goal)
     valid &= footholds_are_safe(ground, field, phase)
@@ -62,8 +84,7 @@ def draw_starts(
         grounded=np.ones((count, len(FEET)), np.int32),
         step=np.zeros(count, np.int32),
     )
-    answer: dict[str, Any] = {"state": state, "valid": valid, "group": ground.kind[field]}
-    return Starts(**answer)
+    return state, valid
 
 
 def _draw_feet(

@@ -29,7 +29,7 @@ def make_task(**changes: Any) -> GaitPlanning:
 def drawn_states(task: GaitPlanning, ground: Ground, count: int, seed: int) -> PlanningState:
     """Return valid starts."""
     generator = np.random.default_rng(seed)
-    starts = task.draw_starts(ground, generator, 40 * count)
+    starts = task.draw_starts(ground, generator, 4 * count)
     return HostPool.of(starts).take(np.arange(count))[0]
 
 

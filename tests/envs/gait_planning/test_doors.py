@@ -12,12 +12,12 @@ from jaxleas.runs import RunFolder, read_metrics
 from jaxleas.training import parse_run_config, read_policy, train
 
 TINY = {
-    "env": {"task": "gait_planning"},
+    "env": {"task": "gait_planning", "examined_distance": [1.0, 2.0]},
     "terrain": {"arenas": 6, "field": {"length": 4.0, "width": 3.0}},
     "network": {"hidden": [8]},
     "ppo": {
         **{"steps": 192, "environments": 16, "unroll": 4, "minibatches": 2, "epochs": 1},
-        "candidates": 256,
+        "candidates": 64,
     },
     "held_out": {"every": 1, "starts": 12, "arenas": 6, "steps": 3},
     "checkpoints": {"keep_last": 3},

@@ -218,7 +218,8 @@ def test_starts_are_at_rest_on_safe_ground_within_reach(task, ground):
 
 
 def test_every_group_begins_somewhere(task, ground):
-    starts = task.draw_starts(ground, np.random.default_rng(0), 4000)
+    starts = task.draw_starts(ground, np.random.default_rng(0), 600)
+    assert starts.valid.mean() > 0.5
     assert set(starts.group[starts.valid]) == set(range(len(FIELD_KINDS)))
 
 
