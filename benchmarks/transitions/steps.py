@@ -72,7 +72,8 @@ def main(arguments: list[str]) -> None:
         state, result = task.advance(ground, weights, state, action, ())
         end = time.process_time()
         picks = pool.draw_picks(generator, (ROBOTS,))
-        state = pool.restart_where(result.terminated | result.truncated, state, picks)
+        over = np.asarray(result.terminated) | np.asarray(result.truncated)
+        state = pool.restart_where(over, state, picks)
         if step:  # the first loads the compiled loops
             solving += solved - begin
             whole += end - begin

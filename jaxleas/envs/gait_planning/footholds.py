@@ -15,7 +15,7 @@ ALONG, ACROSS = 5, 3
 def footholds_are_safe(ground: Ground, field: np.ndarray, phase: Phases) -> Bool[np.ndarray, " N"]:
     """Return whether all feet in contact stand safely, T_footholds of D sec. III-A."""
     safe = ground.safe_at(field[:, None], phase.feet[..., :2])
-    return (safe | ~in_contact(phase.support)).all(axis=1)
+    return np.all(safe | ~in_contact(phase.support), axis=1)
 
 
 def trunk_is_free(

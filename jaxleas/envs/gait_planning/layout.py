@@ -1,7 +1,7 @@
 """Where heights are seen, in the base's frame, and how they change places in a mirror."""
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -51,7 +51,7 @@ def map_points() -> HeightPoints:
     return HeightPoints(points, _mirror_of(points))
 
 
-def _grid(x: object, y: object) -> Float[np.ndarray, "points 2"]:
+def _grid(x: Any, y: Any) -> Float[np.ndarray, "points 2"]:
     return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
 
 

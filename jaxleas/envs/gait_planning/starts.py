@@ -103,4 +103,5 @@ def _draw_feet(
     first = safe.argmax(axis=2)[..., None, None]
     chosen = np.take_along_axis(places, first, axis=2)[:, :, 0]
     heights = ground.heights_at(field[:, None], chosen)
-    return np.concatenate([chosen, heights[..., None]], axis=-1), safe.any(axis=2).all(axis=1)
+    found = np.all(np.any(safe, axis=2), axis=1)
+    return np.concatenate([chosen, heights[..., None]], axis=-1), found

@@ -1,6 +1,7 @@
 """Gait planning trains, resumes and is exported through the doors that steering uses."""
 
 import shutil
+from typing import Any
 
 import numpy as np
 import onnxruntime
@@ -50,13 +51,13 @@ def test_it_trains_resumes_bitwise_and_is_exported(tmp_path, brax_ranks):
 
     export(folder)
     session = onnxruntime.InferenceSession(str(folder / "policy.onnx"))
-    shown = {
+    shown: dict[str, Any] = {
         each.name: np.random.default_rng(0).normal(size=(5, *each.shape[1:])).astype(np.float32)
         for each in session.get_inputs()
     }
     assert set(shown) == {"attitude", "velocity", "feet", "contacts", "heights"}
     expected = policy(shown)
-    outputs = dict(
+    outputs: dict[str, Any] = dict(
         zip((each.name for each in session.get_outputs()), session.run(None, shown), strict=True)
     )
     np.testing.assert_allclose(outputs["phase"], expected["phase"], atol=1e-5)

@@ -160,7 +160,7 @@ def mirrored_state(state, width: float):
     image = Phases(
         com=across(phase.com),
         yaw=-phase.yaw,
-        velocity=phase.velocity * np.float32([1.0, -1.0]),
+        velocity=phase.velocity * np.array([1.0, -1.0], np.float32),
         feet=across(phase.feet)[:, SWAPPED],
         support=np.asarray(MIRRORED, np.int32)[phase.support],
     )
