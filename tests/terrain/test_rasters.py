@@ -1,5 +1,6 @@
 """GeoTIFF images, and GridMaps in bags of ROS 1 and 2."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ rosbags = pytest.importorskip("rosbags", reason="needs the extra maps")
 from rosbags.rosbag1 import Writer as Writer1  # noqa: E402
 from rosbags.rosbag2 import StoragePlugin  # noqa: E402
 from rosbags.rosbag2 import Writer as Writer2  # noqa: E402
+from rosbags.rosbag2.storage_mcap import zstd  # noqa: E402
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: E402
 
 METRES = (34735, "H", 12, (1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32632))
@@ -250,6 +252,50 @@ def test_a_grid_map_is_read_through_its_circular_buffer(tmp_path, kind, start):
         assert found.resolution == 0.1
         assert found.extent == pytest.approx((2.7, 3.3, -2.2, -1.8))
         np.testing.assert_array_equal(found.heights, ramp()[::-1, ::-1].T)
+
+
+def ros1_mcap(path, packing=""):
+    """Write a GridMap message of ROS 1 as MCAP, record by record (mcap.dev/spec)."""
+    store, name = store_of(1), "grid_map_msgs/msg/GridMap"
+    raw = bytes(store.serialize_ros1(message_of(store, 1, {"elevation": ramp()}, (0, 0)), name))
+    definition = store.generate_msgdef(name)[0]
+
+    def text(words):
+        return struct.pack("<I", len(words.encode())) + words.encode()
+
+    def record(kind, body):
+        return struct.pack("<BQ", kind, len(body)) + body
+
+    schema = struct.pack("<H", 1) + text("grid_map_msgs/GridMap") + text("ros1msg")
+    channel = struct.pack("<HH", 0, 1) + text("/map") + text("ros1") + struct.pack("<I", 0)
+    message = struct.pack("<HIQQ", 0, 0, 1, 1) + raw
+    chunk = record(3, schema + text(definition)) + record(4, channel) + record(5, message)
+    packed = zstd.compress(chunk) if packing == "zstd" else chunk
+    head = struct.pack("<QQQI", 1, 1, len(chunk), 0) + text(packing)
+    chunks = record(6, head + struct.pack("<Q", len(packed)) + packed)
+    end = record(15, bytes(4)) + record(2, bytes(20))
+    mark = b"\x89MCAP0\r\n"
+    path.write_bytes(mark + record(1, text("ros1") + text("a test")) + chunks + end + mark)
+    return path
+
+
+@pytest.mark.parametrize("packing", ["", "zstd"])
+def test_an_mcap_with_messages_of_ros_1_is_read(tmp_path, packing, caplog):
+    found = import_terrain(ros1_mcap(tmp_path / "map.mcap", packing))
+    wanted = import_terrain(bag(tmp_path, "bag", [("/map", {"elevation": ramp()}, (0, 0))]))
+    np.testing.assert_array_equal(found.heights, wanted.heights)
+    assert found.extent == pytest.approx(wanted.extent)
+    assert "map.mcap is read on the topic /map, layer elevation" in caplog.text
+    with pytest.raises(InputError, match="has no map on the topic /other; there are /map"):
+        import_terrain(tmp_path / "map.mcap", topic="/other")
+
+
+@pytest.mark.parametrize("kept", [40, 300, 800])
+def test_a_cut_mcap_of_ros_1_is_refused(tmp_path, kept):
+    path = ros1_mcap(tmp_path / "map.mcap")
+    path.write_bytes(path.read_bytes()[:kept])
+    with pytest.raises(InputError, match=r"map\.mcap"):
+        import_terrain(path)
 
 
 def test_topic_and_layer_are_chosen_or_asked_for(tmp_path, caplog):

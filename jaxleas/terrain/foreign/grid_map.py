@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from jaxleas.terrain.foreign.answers import Answer, RefusedError
+from jaxleas.terrain.foreign.ros1_mcap import deserialised, is_ros1, last_messages
 
 MAX_CELLS = 64_000_000
 TYPE = "grid_map_msgs/msg/GridMap"
@@ -31,6 +32,17 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
         path: a .bag, .mcap or .db3 file, or the folder of a ROS 2 bag.
         options: `topic` and `layer`, or None: the only topic, and the layer "elevation".
     """
+    ros1 = path.suffix.lower() == ".mcap" and path.is_file() and is_ros1(path)
+    topic, number, message = (_last_of_ros1 if ros1 else _last)(path, options.get("topic"))
+    layer = _layer(list(message.layers), options.get("layer"))
+    notes = [f"is read on the topic {topic}, layer {message.layers[layer]}"]
+    if number > 1:
+        notes[0] += f", the last of {number} messages"
+    return Answer(_arrays(message, layer), notes)
+
+
+def _last(path: Path, topic: str | None) -> tuple[str, int, Any]:
+    """Return the topic, the number of its messages, and the last of them, by rosbags."""
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -38,18 +50,23 @@ def read(path: Path, options: dict[str, Any]) -> Answer:
     store.register(get_types_from_msg(INFO, "grid_map_msgs/msg/GridMapInfo"))
     store.register(get_types_from_msg(GRID_MAP, TYPE))
     with AnyReader([path], default_typestore=store) as reader:
-        connections = _on_topic(reader.connections, options.get("topic"))
+        connections = _on_topic(reader.connections, topic)
         number, last = 0, None
         for connection, _, raw in reader.messages(connections=connections):
             number, last = number + 1, (connection, raw)
         if last is None:
             raise RefusedError(f"has no message on the topic {connections[0].topic}")
-        message: Any = reader.deserialize(last[1], last[0].msgtype)
-    layer = _layer(list(message.layers), options.get("layer"))
-    notes = [f"is read on the topic {connections[0].topic}, layer {message.layers[layer]}"]
-    if number > 1:
-        notes[0] += f", the last of {number} messages"
-    return Answer(_arrays(message, layer), notes)
+        return connections[0].topic, number, reader.deserialize(last[1], last[0].msgtype)
+
+
+def _last_of_ros1(path: Path, topic: str | None) -> tuple[str, int, Any]:
+    """Return the same of an MCAP file with messages of ROS 1."""
+    found = last_messages(path)
+    chosen = _on_topic([each for each, _, _ in found], topic)[0]
+    number, raw = next((number, raw) for each, number, raw in found if each == chosen)
+    if not number:
+        raise RefusedError(f"has no message on the topic {chosen.topic}")
+    return chosen.topic, number, deserialised(chosen, raw)
 
 
 def _on_topic(connections: list[Any], topic: str | None) -> list[Any]:
