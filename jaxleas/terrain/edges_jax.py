@@ -31,7 +31,7 @@ def edge_distances(
     Returns:
         What `Edges` holds of one map, with `NO_GROUND` instead of NaN.
     """
-    filtered = jax.vmap(partial(_filtered, medians=search.medians))(heights)
+    filtered = jax.vmap(partial(_filtered, search=search))(heights)
     unsafe = jax.vmap(partial(_edge_cells, rise=search.rise))(filtered)
     return filtered, unsafe, resolution * jax.vmap(_distance_in_cells)(unsafe)
 
@@ -45,9 +45,13 @@ def _windows(heights: Float[Array, "rows columns"]) -> Float[Array, "9 rows colu
     )
 
 
-def _filtered(heights: Float[Array, "rows columns"], medians: int) -> Float[Array, "rows columns"]:
-    closed = _windows(_windows(heights).max(axis=0)).min(axis=0)
-    for _ in range(medians):
+def _filtered(
+    heights: Float[Array, "rows columns"], search: EdgeSearch
+) -> Float[Array, "rows columns"]:
+    closed = heights
+    if search.closes:
+        closed = _windows(_windows(heights).max(axis=0)).min(axis=0)
+    for _ in range(search.medians):
         windows = _windows(closed)
         known = is_ground(windows)
         ordered = jnp.sort(jnp.where(known, windows, -NO_GROUND), axis=0)

@@ -22,6 +22,16 @@ def logits_of(head, seed=0, count=64):
     return [jax.random.normal(key, (count, n)) for key, n in zip(parts, head.logits, strict=True)]
 
 
+def test_a_gain_narrows_what_an_untrained_network_does():
+    narrow = Normal("move", NORMAL.scales, gain=0.2)
+    wide, few = (head.distribution(*logits_of(NORMAL)) for head in (NORMAL, narrow))
+    np.testing.assert_allclose(few.location, 0.2 * wide.location, rtol=1e-6)
+    np.testing.assert_allclose(few.deviation, 0.2 * wide.deviation + 0.8e-3, rtol=1e-5)
+    np.testing.assert_allclose(narrow.mode(*logits_of(NORMAL)), np.tanh(few.location), rtol=1e-6)
+    with pytest.raises(InputError, match=r"the gain 0\.0"):
+        Normal("move", NORMAL.scales, gain=0.0)
+
+
 def test_a_choice_is_drawn_as_often_as_its_probability():
     logits = jnp.array([[0.0, 1.0, 2.0, -1.0, 0.5]])
     distribution = CHOICE.distribution(jnp.broadcast_to(logits, (40_000, 5)))

@@ -46,7 +46,7 @@ def twin(heights, search):
         near = window(heights, row, column)
         return bool(np.isnan(near).any() or max(near) - min(near) > search.rise)
 
-    filtered = each_cell(each_cell(heights, highest), lowest)
+    filtered = each_cell(each_cell(heights, highest), lowest) if search.closes else heights
     for _ in range(search.medians):
         filtered = each_cell(filtered, median)
     unsafe = each_cell(filtered, is_unsafe)
@@ -70,9 +70,9 @@ def rough(seed, shape=(19, 26), holes=True):
     return heights.astype(np.float32)
 
 
-@pytest.mark.parametrize("medians", [0, 2])
-def test_scipy_and_jax_agree_with_the_twin(medians):
-    search = EdgeSearch(rise=0.02, medians=medians)
+@pytest.mark.parametrize(("medians", "closes"), [(0, True), (2, True), (0, False)])
+def test_scipy_and_jax_agree_with_the_twin(medians, closes):
+    search = EdgeSearch(rise=0.02, medians=medians, closes=closes)
     maps = [rough(0, holes=False), rough(1, holes=True)]
     batch = edge_distances(jnp.asarray(np.nan_to_num(maps, nan=NO_GROUND)), CELL, search)
     for index, heights in enumerate(maps):
@@ -111,6 +111,15 @@ def test_small_holes_close_and_large_ones_stay_unsafe():
     assert not found.unsafe[5, 5:7].any()
     assert found.unsafe[14:21, 14:21].all()  # with the cells next to the hole
     assert found.unsafe.sum() == 49
+
+
+def test_a_narrow_trench_is_an_edge_unless_it_is_closed():
+    heights = np.zeros((12, 20), np.float32)
+    heights[:, 9:11] = np.nan
+    trench = HeightMap(heights, CELL, (0.0, 0.0))
+    assert not find_edges(trench, EdgeSearch(medians=0)).unsafe.any()
+    unsafe = find_edges(trench, EdgeSearch(medians=0, closes=False)).unsafe
+    np.testing.assert_array_equal(np.flatnonzero(unsafe[5]), [8, 9, 10, 11])
 
 
 def test_absurd_searches_are_refused():
