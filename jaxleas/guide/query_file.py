@@ -75,7 +75,8 @@ def _numbers(where: str, key: str, value: Any) -> tuple[float, ...]:
     if not all(math.isfinite(each) and abs(each) <= _BOUNDS[key] for each in numbers):
         raise InputError(
             f"{where}: {key} {value!r:.60} is not within +-{_BOUNDS[key]:g}; give finite numbers"
-            " in metres, seconds and radians"
+            " in metres, seconds and radians, from where the terrain has x = y = 0: with --origin,"
+            " from the point that it names"
         )
     return tuple(float(each) for each in numbers)
 

@@ -62,9 +62,9 @@ def say_losses(path: str | Path, found: Losses, resolution: float) -> None:
     """
     if found.thin:
         _LOG.warning(
-            "%s: the map of %g m cells lacks %d things thinner than a cell, up to %.2f m high; a"
-            " finer --resolution holds them",
-            *(path, resolution, found.thin, found.thin_height),
+            "%s: the map of %g m cells lacks %s thinner than a cell, up to %.2f m high; a finer"
+            " --resolution may hold more",
+            *(path, resolution, _things(found.thin), found.thin_height),
         )
     if found.covered > 0.0:
         _LOG.warning(
@@ -72,6 +72,10 @@ def say_losses(path: str | Path, found: Losses, resolution: float) -> None:
             " height map holds the upper face alone",
             *(path, found.covered, found.headroom),
         )
+
+
+def _things(count: int) -> str:
+    return "1 thing" if count == 1 else f"{count} things"
 
 
 def _thin(points: Float[np.ndarray, "P 3"], height_map: HeightMap) -> tuple[int, float]:
