@@ -1,0 +1,70 @@
+"""Commanders: goals in turn, another run-up where nothing is gained, and blind walks."""
+
+import numpy as np
+import pytest
+
+from jaxleas.crossing import BlindCommander, PlanningCommander
+from jaxleas.footsteps import FootstepPlan, Goal, WalkingState
+from jaxleas.types import InputError
+from tests.footsteps.made import IDENTITY
+
+
+def state(x=0.0, y=0.0, yaw=0.0, speed=0.0):
+    still = np.zeros(3)
+    velocity = np.array([speed, 0.0, 0.0])
+    return WalkingState(np.array([x, y, 0.4]), yaw, velocity, 0.0, np.zeros((4, 3)), 0, still)
+
+
+class Asked:
+    """A planner that keeps the goals it is asked for, and finds no path."""
+
+    def __init__(self):
+        self.goals = []
+
+    def plan(self, state, goal):
+        self.goals.append(goal)
+        return FootstepPlan("stand", (), np.inf, 0.0, 1)
+
+
+def test_a_robot_that_gets_no_nearer_is_sent_back_and_then_on_again():
+    planner, goal = Asked(), Goal(3.0, 0.0)
+    commander = PlanningCommander(planner, [goal], seed=1)
+    for _ in range(40):
+        assert commander.decide(state(x=1.0)).intent == "no path"
+    back = [index for index, each in enumerate(planner.goals) if each is not goal]
+    assert back
+    assert back[0] > 9  # it waits first
+    assert len(back) < 30  # and tries again
+    for index in back:
+        assert 0.15 <= 1.0 - planner.goals[index].x <= 0.60
+
+
+def test_a_robot_that_gains_ground_is_not_sent_back():
+    planner, goal = Asked(), Goal(3.0, 0.0)
+    commander = PlanningCommander(planner, [goal])
+    for step in range(25):
+        commander.decide(state(x=0.08 * step))
+    assert all(each is goal for each in planner.goals)
+
+
+def test_goals_are_walked_to_in_turn_and_the_last_one_needs_a_slow_robot():
+    planner = Asked()
+    goals = [Goal(1.0, 0.0, distance=0.15), Goal(2.0, 0.0, speed=0.2)]
+    commander = PlanningCommander(planner, goals)
+    numbers = [commander.decide(state(x=x, speed=0.5)).goal for x in (0.0, 0.9, 1.5, 2.0)]
+    assert numbers == [0, 1, 1, 1]
+    assert goals[1].is_met_by(state(x=2.02, speed=0.1))
+    assert not goals[1].is_met_by(state(x=2.02, speed=0.5))
+
+
+def test_a_blind_robot_goes_straight_at_its_goal():
+    commander = BlindCommander(IDENTITY, [Goal(0.0, 2.0, 0.5)], share=0.5)
+    decision = commander.decide(state(yaw=0.0))
+    np.testing.assert_allclose(decision.command, [0.0, 0.4, 0.5])
+    turned = commander.decide(state(yaw=np.pi / 2))
+    np.testing.assert_allclose(turned.command, [0.4, 0.0, -0.8], atol=1e-9)
+    arrived = commander.decide(state(x=0.01, y=2.0, yaw=0.5))
+    assert arrived.intent == "arrived"
+    assert not arrived.command.any()
+    with pytest.raises(InputError, match=r"a blind walk at 1\.5 of the largest speed"):
+        BlindCommander(IDENTITY, [Goal(1.0, 0.0)], 1.5)
