@@ -8,7 +8,7 @@ from typing import Literal, Protocol
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.footsteps import FootstepPlan, FootstepPlanner, Goal, WalkingState, turned, wrapped
+from jaxleas.footsteps import FootstepPlan, Goal, WalkingState, turned, wrapped
 from jaxleas.types import ControllerIdentity, InputError
 
 Intent = Literal["go", "arrived", "no path"]
@@ -46,6 +46,14 @@ class Commander(Protocol):
         ...
 
 
+class Planner(Protocol):
+    """Plans footsteps on a map, as `FootstepPlanner` does."""
+
+    def plan(self, state: WalkingState, goal: Goal) -> FootstepPlan:
+        """Return the footsteps from a measured state towards a goal."""
+        ...
+
+
 class PlanningCommander:
     """Plans footsteps on a map at each contact, and commands the first velocity of the plan.
 
@@ -58,7 +66,7 @@ class PlanningCommander:
         seed: seed of the lengths of run-ups.
     """
 
-    def __init__(self, planner: FootstepPlanner, goals: Sequence[Goal], seed: int = 0) -> None:
+    def __init__(self, planner: Planner, goals: Sequence[Goal], seed: int = 0) -> None:
         self._planner = planner
         self._goals = _Goals(goals)
         self._run_up = _RunUp(np.random.default_rng(seed))
