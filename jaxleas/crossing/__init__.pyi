@@ -8,7 +8,7 @@ from .courses import make_course as make_course
 from .crossing import Crossing as Crossing
 from .crossing import Outcome as Outcome
 from .crossing import cross as cross
-from .crossing import first_pair as first_pair
+from .first_pair import first_pair as first_pair
 from .ground_start import measured_at_start as measured_at_start
 from .ground_start import standing_on as standing_on
 from .in_words import in_words as in_words

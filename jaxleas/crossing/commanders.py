@@ -8,6 +8,8 @@ from typing import Literal, Protocol
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.crossing.goals import Goals
+from jaxleas.crossing.run_up import RunUp
 from jaxleas.footsteps import FootstepPlan, Goal, WalkingState, turned, wrapped
 from jaxleas.types import ControllerIdentity, InputError
 
@@ -68,8 +70,8 @@ class PlanningCommander:
 
     def __init__(self, planner: Planner, goals: Sequence[Goal], seed: int = 0) -> None:
         self._planner = planner
-        self._goals = _Goals(goals)
-        self._run_up = _RunUp(np.random.default_rng(seed))
+        self._goals = Goals(goals)
+        self._run_up = RunUp(np.random.default_rng(seed))
 
     def decide(self, state: WalkingState) -> Decision:
         """Return the first command of a plan from a measured state."""
@@ -83,54 +85,6 @@ class PlanningCommander:
         if not plan.footsteps:
             intent = "arrived" if plan.status == "reached" else "no path"
         return Decision(intent, plan.command, plan, perf_counter() - begin, self._goals.number)
-
-
-class _RunUp:
-    """Sends a robot back that gets no nearer to its goal."""
-
-    def __init__(self, rng: np.random.Generator) -> None:
-        self._rng = rng
-        self._nearest, self._waits = np.inf, 0
-        self._back: Goal | None = None
-        self._asked: Goal | None = None
-
-    @property
-    def is_taken(self) -> bool:
-        """Whether the robot walks back now."""
-        return self._back is not None
-
-    def end(self) -> None:
-        """Let the robot walk to its goal again."""
-        self._back, self._nearest, self._waits = None, np.inf, 0
-
-    def goal_for(self, state: WalkingState, goal: Goal) -> Goal:
-        """Return the goal, or a place behind the robot."""
-        if goal is not self._asked:
-            self._asked = goal
-            self.end()
-        self._waits += 1
-        apart = float(np.hypot(*(state.com[:2] - (goal.x, goal.y))))
-        if self._back is None and apart < self._nearest - NEARER:
-            self._nearest, self._waits = apart, 0
-        if self._back is not None and self._waits > PATIENCE:
-            self.end()
-        elif self._back is None and self._waits > PATIENCE and apart > NEAR_GOAL:
-            length = self._rng.uniform(*RUN_UPS)
-            behind = turned(np.array([-length, 0.0]), np.asarray(state.yaw)) + state.com[:2]
-            x, y = map(float, behind)
-            self._back = Goal(x, y, goal.yaw, 0.5 * RUN_UPS[0], REST_ANGLE)
-            self._waits = 0
-        return goal if self._back is None else self._back
-
-
-NEARER, PATIENCE = 0.05, 10
-"""Way towards the goal [m] that a robot must make in so many decisions."""
-RUN_UPS = (0.15, 0.60)
-"""Lengths of run-ups [m]."""
-NEAR_GOAL = 0.3
-"""Distance from the goal within which none is taken [m]."""
-REST_ANGLE = float(np.pi)
-"""Difference of the heading that does not matter [rad]."""
 
 
 class BlindCommander:
@@ -155,7 +109,7 @@ class BlindCommander:
                 f"a blind walk at {share:g} of the largest speed: give more than 0, and at most 1"
             )
         self._largest = np.array(controller.max_speeds)
-        self._goals = _Goals(goals)
+        self._goals = Goals(goals)
         self._speed = share * self._largest[0]
 
     def decide(self, state: WalkingState) -> Decision:
@@ -176,21 +130,3 @@ class BlindCommander:
 
 APPROACH, TURNING = 1.0, 1.0
 """Speed per distance left, and turning rate per angle left, of a robot without a map [1/s]."""
-
-
-class _Goals:
-    """Goals that are walked to in turn.
-
-    Attributes:
-        number: index of the one that is walked to.
-    """
-
-    def __init__(self, goals: Sequence[Goal]) -> None:
-        self._goals = list(goals)
-        self.number = 0
-
-    def for_state(self, state: WalkingState) -> Goal:
-        """Return the goal to walk to, the next one where that before is reached."""
-        while self.number < len(self._goals) - 1 and self._goals[self.number].is_met_by(state):
-            self.number += 1
-        return self._goals[self.number]

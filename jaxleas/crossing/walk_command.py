@@ -102,9 +102,7 @@ def walk(
         raise InputError(f"{log}: the name of a log must end in .npz")
     body = load_body(robot)
     walker = find_controller(controller, body, (controller, *allow))
-    scene = load_scene(
-        terrain, replace(reading, resolution=None) if has_polygons(terrain) else reading
-    )
+    scene = _scene_of(terrain, reading)
     goals = [] if waypoints is None else read_waypoints(waypoints)
     goals.append(pose_goal(goal, "--goal"))
     place = pose_goal(start, "--start")
