@@ -129,7 +129,7 @@ def test_a_surrogate_becomes_the_foresight(folder):
     env = SteeringEnv(config.env)
     assert isinstance(env.foresight, SurrogateForesight)
     assert env.foresight.threshold == 0.5
-    assert len(env._judge.points_in_root) < len(env.points_in_root)
+    assert len(env.endings.points_read) < len(env.points_in_root)
     other = SurrogateForesight(surrogate(hazard=0.1))
     assert SteeringEnv(config.env, foresight=other).foresight is other
 

@@ -53,6 +53,7 @@ class Endings:
     Attributes:
         points_in_root: points at which the local terrain is sampled: those of the observation and
             of the footprint first, then any others that a condition reads [m].
+        points_read: points that `condition` reads, a few of those [m].
         condition: condition on local terrain and motion; an episode ends where it fails.
         conditions: conditions that together are `condition`, by name.
         foresight: condition with memory, such as a surrogate of a contact planner; an episode also
@@ -91,10 +92,9 @@ class Endings:
                 condition = self._hardened(condition, spare)
         else:
             named = {"own": condition}
-        # Points that the conditions read: only a few of all.
         self._judge = with_points(condition, sampled)
-        self._judged = np.asarray(self._judge.points_in_root, np.float64)
-        self.points_in_root = extended(sampled, self._judged)
+        self.points_read = np.asarray(self._judge.points_in_root, np.float64)
+        self.points_in_root = extended(sampled, self.points_read)
         self.condition = read_from(self.points_in_root, self._judge)
         self.conditions = {
             name: read_from(self.points_in_root, with_points(each, sampled))
@@ -134,7 +134,7 @@ class Endings:
             map_index,
             motion.position,
             motion.yaw,
-            self._judged,
+            self.points_read,
             lambda heights: self._judge(heights, motion),
         )
 

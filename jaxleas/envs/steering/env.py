@@ -95,8 +95,6 @@ class SteeringEnv:
             # All of them, also those known already: they are read as one block.
             self.points_in_root = np.concatenate([self.points_in_root, feelers.points_in_root])
         self.sight = Sight(self.layout, self.height_range, feelers)
-        self.observe = self.sight.observe
-        self.margin = self.endings.margin
 
     @property
     def condition(self) -> Condition:
@@ -118,6 +116,21 @@ class SteeringEnv:
     ) -> Float[Array, "*batch points"]:
         """Return the local terrain: heights at `points_in_root` relative to the root [m]."""
         return atlas.heights_around(map_index, motion.position, motion.yaw, self.points_in_root)
+
+    def margin(
+        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
+    ) -> Float[Array, "*batch"]:
+        """Return the margin of the conditions that need no memory [m]."""
+        return self.endings.margin(atlas, map_index, motion)
+
+    def observe(
+        self,
+        heights_in_root: Float[Array, "*batch points"],
+        motion: RootMotion,
+        goal: Float[Array, "*batch 2"],
+    ) -> Float[Array, "*batch size"]:
+        """Return the observation of a robot that seeks `goal` on this local terrain."""
+        return self.sight.observe(heights_in_root, motion, goal)
 
     def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return the robots' observation: as `observe` on their local terrain, in one pass."""
