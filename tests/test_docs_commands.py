@@ -207,7 +207,14 @@ class Runner:
 RUN = [page for page, block in ALL if not block.title and (block.language == "sh" or block.mark)]
 
 
-@pytest.mark.parametrize("page", dict.fromkeys(RUN), ids=name_of)
+LONG = {"evaluation.md"}  # pages whose commands take half a minute
+PAGES = [
+    pytest.param(page, marks=[pytest.mark.slow] if page.name in LONG else [], id=name_of(page))
+    for page in dict.fromkeys(RUN)
+]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_the_commands_of_the_page_run(page: Path, workplace: Path, monkeypatch, brax_ranks) -> None:
     runner = Runner(monkeypatch)
     for block in blocks(page):

@@ -215,6 +215,7 @@ def test_a_goal_is_replaced_when_reached_and_when_its_time_is_up():
     assert reached[0] == [True, False]
 
 
+@pytest.mark.slow
 def test_any_batch_shape_gives_the_same_numbers():
     env, weights = make()
     atlas = world_of(height_map(bumpy)).atlas
