@@ -208,13 +208,13 @@ RUN = [page for page, block in ALL if not block.title and (block.language == "sh
 
 
 LONG = {"evaluation.md"}  # pages whose commands take half a minute
-PAGES = [
+RUN_PAGES = [
     pytest.param(page, marks=[pytest.mark.slow] if page.name in LONG else [], id=name_of(page))
     for page in dict.fromkeys(RUN)
 ]
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", RUN_PAGES)
 def test_the_commands_of_the_page_run(page: Path, workplace: Path, monkeypatch, brax_ranks) -> None:
     runner = Runner(monkeypatch)
     for block in blocks(page):
