@@ -1,7 +1,7 @@
-"""Who commands a walking robot: the planner with its map, or nobody who looks (blind)."""
+"""Commanders of walking robots: one plans on a map, one walks blindly."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Literal, Protocol
 
@@ -119,7 +119,7 @@ class BlindCommander:
         away = turned(np.array([goal.x, goal.y]) - state.com[:2], np.asarray(-state.yaw))
         turn = float(wrapped(np.asarray(goal.yaw - state.yaw)))
         distance = float(np.hypot(*away))
-        if distance <= goal.distance and abs(turn) <= goal.angle:
+        if replace(goal, speed=np.inf).is_met_by(state):
             nothing = np.zeros(3)
             return Decision("arrived", nothing, None, perf_counter() - begin, self._goals.number)
         speed = min(self._speed, APPROACH * distance)

@@ -19,9 +19,9 @@ Outcome = Literal["reached", "no path", "fell", "time", "interrupted"]
 """It stands at the goal; no command was safe, and it stands; it fell; its time was over; a person
 stopped it."""
 RESTS = 0.05
-"""Speed of the centre of mass below which a robot that was told to stand stands [m/s]."""
+"""Speed of the centre of mass below which a robot counts as standing [m/s]."""
 SETTLES = 0.4
-"""Time after which a robot that was told to stand is asked whether it does [s]."""
+"""Time that a robot gets to come to rest once it is told to stand [s]."""
 LATE = 1.0
 """Time after which a walking robot is commanded anew although no footstep has ended [s]."""
 

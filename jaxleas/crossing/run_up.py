@@ -5,7 +5,7 @@ import numpy as np
 from jaxleas.footsteps import Goal, WalkingState, turned
 
 NEARER, PATIENCE = 0.05, 10
-"""Way towards the goal [m] that a robot must make in so many decisions."""
+"""Progress towards the goal [m] that is expected within a number of decisions [1]."""
 RUN_UPS = (0.15, 0.60)
 """Lengths of run-ups [m]."""
 NEAR_GOAL = 0.3

@@ -39,6 +39,7 @@ from jaxleas.footsteps import (
     Goal,
     MotionModel,
     buffer_of,
+    parse_pose,
     read_motion_model,
     require_goal,
     require_start,
@@ -104,8 +105,8 @@ def walk(
     walker = find_controller(controller, body, (controller, *allow))
     scene = _scene_of(terrain, reading)
     goals = [] if waypoints is None else read_waypoints(waypoints)
-    goals.append(pose_goal(goal, "--goal"))
-    place = pose_goal(start, "--start")
+    goals.append(parse_pose(goal, "--goal", STOPS))
+    place = parse_pose(start, "--start")
     stands = standing_on(scene, body, [(place.x, place.y, place.yaw)])
     physics = Walk(make_physics(body, 1, scene), walker)
     if blind is None:
@@ -153,19 +154,6 @@ class _Shown:
 
 _SHOWN = 25
 """Ticks between two updates of the progress."""
-
-
-def pose_goal(text: str, option: str) -> Goal:
-    """Return the pose that X,Y or X,Y,YAW names, at which a robot stops."""
-    try:
-        numbers = [float(each) for each in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
-        raise InputError(f"{option} is '{text}'; give X,Y or X,Y,YAW in metres and radians: 2,0,0")
-    if len(numbers) == 3:
-        return Goal(*numbers, speed=STOPS)
-    return Goal(*numbers, angle=float(np.pi), speed=STOPS)
 
 
 def _scene_of(terrain: Path, reading: Reading) -> Scene:

@@ -1,8 +1,8 @@
 """How a robot is walked across terrain: its search, its map, and the time it gets."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from jaxleas.footsteps import WIDTH, SearchSettings
+from jaxleas.footsteps import SearchSettings, settings_for
 from jaxleas.types import InputError
 
 
@@ -43,10 +43,9 @@ class WalkSettings:
     @property
     def search(self) -> SearchSettings:
         """How commands are searched: exactly up to a horizon of two."""
-        return SearchSettings(
-            horizon=self.horizon,
+        return replace(
+            settings_for(self.horizon),
             clearance=self.clearance,
-            width=None if self.horizon <= 2 else WIDTH,
             fastest=self.fastest,
             climbing=self.climbing,
             jump=self.jump,

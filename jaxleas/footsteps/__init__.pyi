@@ -19,6 +19,7 @@ from .model_file import read_motion_model as read_motion_model
 from .model_file import write_motion_model as write_motion_model
 from .plan import FootstepPlan as FootstepPlan
 from .plan import PlannedFootstep as PlannedFootstep
+from .pose_text import parse_pose as parse_pose
 from .record_file import read_footsteps as read_footsteps
 from .record_file import write_footsteps as write_footsteps
 from .records import FootstepRecords as FootstepRecords
@@ -28,7 +29,6 @@ from .records import movement_of as movement_of
 from .scores import Score as Score
 from .scores import mean_absolute_error as mean_absolute_error
 from .scores import r2_percent as r2_percent
-from .search import WIDTH as WIDTH
 from .search import FootstepPlanner as FootstepPlanner
 from .search import SearchSettings as SearchSettings
 from .search import plan_footsteps as plan_footsteps

@@ -109,22 +109,23 @@ class Expander:
         fastest, climbing = limits.fastest, limits.climbing
         self.model, self.controller = model, model.controller
         commands = model.commands()
-        shares = np.abs(commands) / np.maximum(model.controller.max_speeds, 1e-9)
-        shares = shares.max(axis=1)
-        self.commands = commands[shares <= fastest + 1e-9]
+        self._largest = np.maximum(model.controller.max_speeds, 1e-9)
+        shares = np.abs(commands / self._largest).max(axis=1)
+        kept = shares <= fastest + 1e-9
+        self.commands = commands[kept]
         if not len(self.commands):
             raise InputError(
                 f"no command is as slow as {fastest:g} of the largest speed; the slowest is"
                 f" {shares.min(initial=1.0):g} of it"
             )
-        self._climbs = shares[shares <= fastest + 1e-9] <= climbing + 1e-9
+        self._climbs = shares[kept] <= climbing + 1e-9
         self._climbing = climbing * model.controller.max_speeds[0] if climbing < 1.0 else np.inf
         self.refused: dict[Refusal, int] = {}
         self.miss: Miss | None = None
         self.forget()
         self._map = FramedMap(costs)
         self._doubt, self._jump = limits.doubt, limits.jump
-        self._shares = self.commands / np.maximum(model.controller.max_speeds, 1e-9)
+        self._shares = self.commands / self._largest
         # The command's share of a prediction is the same in every state.
         self._of_command = [self.commands @ weights[:3] for weights in model.weights]
         self._of_state = [weights[3:] for weights in model.weights]
@@ -228,7 +229,7 @@ class Expander:
 
     def _steady(self, parents: list[Node]) -> Bool[np.ndarray, " K"]:
         """Return whether each command from each state is near enough to the one before."""
-        before = np.stack([node.command for node in parents]) / self.controller.max_speeds
+        before = np.stack([node.command for node in parents]) / self._largest
         apart = np.abs(self._shares - before[:, None]).sum(axis=2)
         return (apart <= self._jump + 1e-9).ravel()
 

@@ -3,17 +3,15 @@
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from jaxleas.footsteps.cost_map import FootCostMap, buffer_of
 from jaxleas.footsteps.cost_pictures import draw_cost_map
 from jaxleas.footsteps.model_file import read_motion_model
+from jaxleas.footsteps.pose_text import parse_pose
 from jaxleas.footsteps.search import SearchSettings, plan_footsteps, settings_for
 from jaxleas.footsteps.search_costs import Cost
 from jaxleas.footsteps.state_file import read_state, write_plan
-from jaxleas.footsteps.walking_state import Goal, require_goal, require_start
+from jaxleas.footsteps.walking_state import require_goal, require_start
 from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
-from jaxleas.types import InputError
 
 
 def plan(
@@ -50,7 +48,7 @@ def plan(
         require_picture(picture)
     model = read_motion_model(models)
     start = read_state(state, model.controller)
-    target = _goal(goal)
+    target = parse_pose(goal, "--goal")
     if reading.resolution is None and has_polygons(terrain):
         reading = replace(reading, resolution=CELL)
     height_map = import_terrain(terrain, reading)
@@ -75,14 +73,3 @@ CELL = 0.02
 """Edge of a cell of polygons where none is stated [m]: half a foot."""
 MOST_EXACT = 1_000_000
 """States after which even an exact search ends: its heap would fill the memory."""
-
-
-def _goal(text: str) -> Goal:
-    """Return the pose that X,Y or X,Y,YAW names."""
-    try:
-        numbers = [float(each) for each in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
-        raise InputError(f"--goal is '{text}'; give X,Y or X,Y,YAW in metres and radians: 2,0,0")
-    return Goal(*numbers) if len(numbers) == 3 else Goal(*numbers, angle=float(np.pi))

@@ -43,8 +43,8 @@ class StepCosts:
 
     Attributes:
         spent: cost so far.
-        bound: that and the least that is left.
-        total: that and about what is left: the cost of a plan that ends here.
+        bound: cost so far and the least cost that is left.
+        total: cost so far and an estimate of what is left: the cost of a plan that ends here.
     """
 
     spent: Float[np.ndarray, " K"]

@@ -11,7 +11,7 @@ def shipped_model(controller: ControllerIdentity) -> MotionModel:
     """Return the package's motion models of a controller (docs/quadruped.md says of what data).
 
     Raises:
-        InputError: there are none, or the controller is another one of that name.
+        InputError: no models are shipped for it, or they are of another identity.
     """
     folder = resources.files("jaxleas.footsteps") / "data"
     name = f"{controller.name}_{controller.robot}.npz"

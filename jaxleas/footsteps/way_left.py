@@ -20,7 +20,7 @@ class Strides:
 
     Attributes:
         ahead: forward [m].
-        aside: to the side, the lesser of both [m].
+        aside: to the left or to the right, whichever is less [m].
         turn: change of the heading, the lesser of both ways [rad].
         back: backward; next to nothing without such commands [m].
     """
@@ -75,7 +75,7 @@ class WayLeft:
 
     Args:
         model: motion models.
-        commands: commands that may be given.
+        strides: how far one footstep leads.
         goal: pose to reach.
     """
 

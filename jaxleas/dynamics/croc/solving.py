@@ -66,7 +66,7 @@ def decide_transitions(
         transitions: transitions of any batch shape, in NumPy arrays.
         least: margin that is asked for [1].
         discretisation: degree of the curve, and where it is checked; as for `solve_transitions`.
-        solver: as for `solve_transitions`; `jax` finds the largest margins.
+        solver: solver to use, as in `solve_transitions`; `jax` finds the largest margins.
 
     Raises:
         InputError: shapes disagree, a number is out of range, or numba is not installed.

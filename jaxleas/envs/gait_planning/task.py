@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
+import jax
 import numpy as np
 
 from jaxleas.dynamics import (
@@ -94,7 +95,7 @@ class GaitPlanning(Task):
                 "unknown": unknown,
             },
         }
-        phase = select_on_host(accepted, candidate, state.phase)
+        phase = _select(accepted, candidate, state.phase)
         grounded, step = grounded.astype(np.int32), step.astype(np.int32)
         after = replace(state, phase=phase, grounded=grounded, step=step)
         return after, StepResult(**answer)
@@ -115,7 +116,7 @@ class GaitPlanning(Task):
         # JAX compiles a program for each number of transitions: without numba it gets all of them.
         chosen = np.flatnonzero(asked if has_compiler() else np.ones_like(asked))
         if len(chosen):
-            before, after = (_some(each, chosen) for each in (phase, candidate))
+            before, after = jax.tree.map(lambda leaf: leaf[chosen], (phase, candidate))
             transitions = transitions_of(self.config, before, after, times[chosen])
             where = Discretisation(instants=self.config.instants)
             answers = decide_transitions(transitions, self.config.least_margin, where)
@@ -133,15 +134,10 @@ class GaitPlanning(Task):
         return Examination(held_out.starts, held_out.steps, cells)
 
 
-def _some(phase: Phases, chosen: np.ndarray) -> Phases:
-    return Phases(**{name: value[chosen] for name, value in vars(phase).items()})
-
-
-def select_on_host(flag: np.ndarray, chosen: Phases, other: Phases) -> Phases:
+def _select(flag: np.ndarray, chosen: Phases, other: Phases) -> Phases:
     """Return, robot by robot, `chosen` where `flag` is true and `other` elsewhere."""
 
-    def pick(name: str, value: np.ndarray) -> np.ndarray:
-        wide = flag.reshape(flag.shape + (1,) * (value.ndim - 1))
-        return np.where(wide, value, getattr(other, name))
+    def pick(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        return np.where(flag.reshape(flag.shape + (1,) * (left.ndim - flag.ndim)), left, right)
 
-    return Phases(**{name: pick(name, value) for name, value in vars(chosen).items()})
+    return jax.tree.map(pick, chosen, other)
