@@ -12,15 +12,15 @@ from jaxleas.terrain.merging import merge
 from jaxleas.terrain.polygons import CONVEXITY_TOLERANCE, PLANARITY_TOLERANCE
 
 COPLANAR = (1e-6, 1e-8, 1e-10)
-"""Neighbours are coplanar if 1 - cosine of the angle between their normals is below this; the next
-value counts where so many small angles add up that the faces lie on no plane."""
+"""Neighbours are coplanar if 1 - cosine of the angle between their normals is below this. A stricter
+value is tried where small angles add up, and the merged faces would lie on no plane."""
 OFF_PLANE = 0.1 * PLANARITY_TOLERANCE
 """Distance from their plane up to which faces lie on it [m]."""
 SLACK = 1e-5
 """Distance of a corner from the line between its neighbours up to which a side is straight [m]:
 about the last digit of a 32-bit number some 100 m from the origin."""
 LENGTHS = 4
-"""Number of lengths that are told apart between one and its double."""
+"""Number of classes of edge lengths per doubling of the length."""
 DIRECTIONS = 64
 """Number of steps in which a coordinate of a direction is told apart; below 128."""
 SHORTEST = 63
