@@ -12,8 +12,8 @@ from jaxleas.terrain.merging import merge
 from jaxleas.terrain.polygons import CONVEXITY_TOLERANCE, PLANARITY_TOLERANCE
 
 COPLANAR = (1e-6, 1e-8, 1e-10)
-"""Neighbours are coplanar if 1 - cosine of the angle between their normals is below this. A stricter
-value is tried where small angles add up, and the merged faces would lie on no plane."""
+"""Neighbours are coplanar if 1 - cosine of the angle between their normals is below this.
+A stricter value is tried where small angles add up, and the merged faces would lie on no plane."""
 OFF_PLANE = 0.1 * PLANARITY_TOLERANCE
 """Distance from their plane up to which faces lie on it [m]."""
 SLACK = 1e-5
