@@ -38,9 +38,9 @@ from .roadmaps.connections import one as one
 from .roadmaps.exact import scene_of as scene_of
 from .roadmaps.navigation import Navigation as Navigation
 from .roadmaps.navigation import Navigator as Navigator
-from .roadmaps.navigation import motion_at as motion_at
 from .roadmaps.ompl import import_ompl as import_ompl
 from .roadmaps.tuning import make_navigator as make_navigator
+from .roadmaps.walked import motion_at as motion_at
 from .rollout import paths as paths
 from .rollout import roll_out as roll_out
 from .starts import choose_start as choose_start

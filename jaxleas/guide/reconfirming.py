@@ -11,7 +11,7 @@ from jaxleas.conditions import EXACT_TWINS
 from jaxleas.guide.failures import Failure
 from jaxleas.guide.files import Reason
 from jaxleas.guide.roadmaps.exact import scene_of
-from jaxleas.guide.roadmaps.navigation import until_refused
+from jaxleas.guide.roadmaps.walked import until_refused
 from jaxleas.robots import Robot
 from jaxleas.terrain import Reading, Scene
 from jaxleas.types import GuidePath, InputError

@@ -9,7 +9,7 @@ import pytest
 from jaxleas.guide.roadmaps import Budget, Places
 from jaxleas.guide.roadmaps.connections import Connector
 from jaxleas.guide.roadmaps.ledger import Ledger, Question, key_of
-from jaxleas.guide.roadmaps.navigation import part_towards, passages
+from jaxleas.guide.roadmaps.walked import part_towards, passages
 from jaxleas.guide.starts import start_motion
 from jaxleas.types import GuidePath, InputError
 from tests.guide.roadmaps.worlds import ENV, kino_navigator, trench_map
