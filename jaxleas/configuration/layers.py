@@ -23,9 +23,9 @@ def layers_of(path: str | Path) -> Layers:
 
 def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
     """Return the values that `path` and the files it extends state, the most basic first."""
+    stated = read_mapping(path)  # first, as it refuses what is no name of a file
     if path.resolve() in above:
         raise InputError(f"{path} extends itself: {' -> '.join(map(str, (*above, path)))}")
-    stated = read_mapping(path)
     parent = stated.pop("extends", None)
     if parent is None:
         return [(str(path), stated)]

@@ -39,14 +39,14 @@ def load_robot(name: str) -> Robot:
     if _is_json(str(name)):
         return read_robot(name)
     file = FOLDER / f"{name}.json"
-    # A name must not lead out of the folder.
-    if re.fullmatch(r"[\w-]+", str(name)) and file.is_file():
+    # A name must not lead out of the folder, and files have no longer ones.
+    if re.fullmatch(r"[\w-]{1,60}", str(name)) and file.is_file():
         return _require_name(read_robot(file), name, file)
     known = sorted({*robot_names(), *(path.stem for path in FOLDER.glob("*.json"))})
     near = difflib.get_close_matches(str(name).lower(), known, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise InputError(
-        f"there is no robot {name!r}, only {', '.join(known)} and those that you describe in"
+        f"there is no robot {name!r:.80}, only {', '.join(known)} and those that you describe in"
         f" {FOLDER}/ of the working folder or give as the path of a .json file{hint}"
     )
 

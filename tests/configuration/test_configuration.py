@@ -184,6 +184,12 @@ def test_a_missing_file_and_a_folder_are_named(tmp_path: Path) -> None:
             load_config(Whole, path)
 
 
+@pytest.mark.parametrize("name", ["a\0b.yaml", "a" * 300 + ".yaml"])
+def test_what_is_no_name_of_a_file_is_refused(name: str) -> None:
+    with pytest.raises(InputError, match="does not exist"):
+        load_config(Whole, name)
+
+
 def test_help_shows_every_field_with_its_value_and_docstring(load, capsys) -> None:
     with pytest.raises(SystemExit) as caught:
         load("rates: {discount: 0.25}", "--help")

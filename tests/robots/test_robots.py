@@ -285,3 +285,9 @@ def test_the_maker_makes_the_shipped_file(name, makers, tmp_path):
             np.column_stack([each.normals, each.offsets]) for each in (made.steps[key], polytope)
         ]
         np.testing.assert_allclose(*(each[np.lexsort(each.T)] for each in faces))
+
+
+@pytest.mark.parametrize("name", ["a" * 300, "ä" * 200, "a" * 300 + ".json", "a\0b", "../talos"])
+def test_what_is_no_name_of_a_robot_is_refused(name):
+    with pytest.raises(InputError):
+        load_robot(name)

@@ -10,6 +10,8 @@ from jaxleas.terrain.planes.region import Growth, Region
 
 OUTLIER = 3.0
 """Standard deviations from which on a cell's distance from a plane counts no more."""
+STRAY = OUTLIER + 1.0
+"""Standard deviations beyond which a cell is off its own plane."""
 LOYAL = 0.5
 """Squared distance, in standard deviations, by which another plane must fit the surroundings of a
 cell better than the one that it has grown to: less is noise."""
@@ -36,21 +38,24 @@ def assign(ground: Growth, regions: Sequence[Region], smooth: int) -> Int[np.nda
 
     best = np.full(ground.known.shape, np.inf)
     owner = np.zeros(ground.known.shape, np.int32)
+    off = np.zeros_like(ground.known)
     even = _even(smooth)
     reach = smooth // 2 + 2
     for number, region in enumerate(regions, start=1):
-        box = around(region.box, reach + 1, ground.known.shape)
+        box = around(region.box, reach + smooth // 2, ground.known.shape)
         core = region.within(box)
         near = maximum_filter(core, size=2 * reach + 1)
         known = ground.known[box]
         square = ((ground.heights[box] - region.plane.over(box)) / ground.noise) ** 2
+        stray = square > STRAY**2
         square = np.minimum(square, OUTLIER**2)
         misfit = _around_each(square, known, even) + np.where(core, 0.0, LOYAL)
         better = near & known & (misfit < best[box])
         better &= _around_each(square, known, _close) < NO_PLANE
         best[box][better] = misfit[better]
         owner[box][better] = number
-    cells = np.nonzero(owner)
+        off[box][better] = stray[better]
+    cells = np.nonzero(off)
     for _ in range(smooth // 2):
         cells = _settle_outliers(ground, [region.plane for region in regions], owner, cells)
     return owner
@@ -95,7 +100,7 @@ def _settle_outliers(
         plane = Plane(*known[numbers].T)  # pyright: ignore[reportArgumentType]
         return np.abs(ground.heights[row, column] - plane.at(row, column)) / ground.noise
 
-    off = distance(owner[row, column]) > OUTLIER + 1.0  # a NaN is not
+    off = distance(owner[row, column]) > STRAY  # a NaN is not
     row, column = row[off], column[off]
     around_them = np.pad(owner, 1)
     nearest, chosen = np.full(len(row), OUTLIER), np.zeros(len(row), np.int32)

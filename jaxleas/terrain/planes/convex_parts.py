@@ -44,8 +44,8 @@ def area(corners: Float[np.ndarray, "V 2"]) -> float:
     """Return the area of a polygon, positive if its corners run counter-clockwise."""
     if len(corners) < 3:
         return 0.0
-    x, y = (corners - corners[0]).T
-    return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
+    x, y = (corners[1:] - corners[0]).T
+    return 0.5 * float(x[:-1] @ y[1:] - y[:-1] @ x[1:])
 
 
 def kernel(corners: Float[np.ndarray, "V 2"]) -> Float[np.ndarray, "W 2"]:

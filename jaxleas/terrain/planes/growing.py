@@ -5,6 +5,8 @@ so what large windows leave is left to smaller ones. Cores stay half a window aw
 `assigning.py` brings each cell up to the edge to its plane.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Bool
 
@@ -21,6 +23,8 @@ RISE = 0.1
 """Height by which they may differ, besides that of their noise, in its standard deviations."""
 FIRST_REACH = 2
 """Half side of the first part of the map in which a plane grows, in windows."""
+MANY = 1000
+"""Number of seeds that are looked at together: most are taken by then."""
 
 
 def grow_regions(ground: Growth, scales: list[Windows]) -> list[Region]:
@@ -56,15 +60,11 @@ def _fresh(
     """Return new regions, from the flattest windows on; they are taken out of `usable`."""
     found = []
     seeds = _large(usable, ground.least_core)
-    row, column = np.nonzero(seeds)
-    order = np.argsort(windows.deviation[row, column], kind="stable")
-    half = windows.size // 2
-    for r, c in zip(row[order].tolist(), column[order].tolist(), strict=True):
-        if not seeds[r, c]:
-            continue
-        region = _grown(ground, windows, usable, (r, c))
-        if region.size < ground.least_core:
-            seeds[max(r - half, 0) : r + half + 1, max(c - half, 0) : c + half + 1] = False
+    for seed in _flattest_first(seeds, windows):
+        first, region = _grown(ground, windows, usable, seed)
+        if region is None:
+            seeds[around(_box_of(seed), windows.size // 2, seeds.shape)] = False
+            seeds[first.box] &= ~first.cells  # they would begin with the same plane
             continue
         found.append(region)
         for each in (usable, seeds):
@@ -72,29 +72,52 @@ def _fresh(
     return found
 
 
+def _flattest_first(seeds: Bool[np.ndarray, "R C"], windows: Windows) -> Iterator[tuple[int, int]]:
+    """Yield the places of seeds, the flattest windows first, unless taken out by then."""
+    cells = np.flatnonzero(seeds)
+    cells = cells[np.argsort(windows.deviation.reshape(-1)[cells], kind="stable")]
+    left = seeds.reshape(-1)  # the same memory
+    for first in range(0, len(cells), MANY):
+        some = cells[first : first + MANY]
+        for cell in some[left[some]].tolist():
+            if left[cell]:
+                yield divmod(cell, seeds.shape[1])
+
+
 def _grown(
     ground: Growth, windows: Windows, usable: Bool[np.ndarray, "R C"], seed: tuple[int, int]
-) -> Region:
-    """Return the connected windows around a seed that agree with its plane."""
+) -> tuple[Region, Region | None]:
+    """Return the connected windows around a seed that agree with its plane.
+
+    Returns:
+        Those near it that agree with the plane of its own window; and the whole region, None if it
+        comes to too little.
+    """
     r, c = seed
     slopes = float(windows.along_rows[r, c]), float(windows.along_columns[r, c])
     plane = Plane(float(windows.height[r, c]) - slopes[0] * r - slopes[1] * c, *slopes)
     reach = FIRST_REACH * windows.size
-    box = around((slice(r, r + 1), slice(c, c + 1)), reach, usable.shape)
-    region = Region(plane, box, np.zeros((0, 0), bool))
+    box = around(_box_of(seed), reach, usable.shape)
+    first, settled = None, False
     while True:
-        for _ in range(2):
-            cells = _agreeing(ground, windows, usable, region.plane, box)
-            if np.count_nonzero(cells) < ground.least_core:  # whether they hang together or not
-                return Region(plane, box, cells)
+        cells = _agreeing(ground, windows, usable, plane, box)
+        if np.count_nonzero(cells) >= ground.least_core:  # whether they hang together or not
             cells = _with(cells, (r - box[0].start, c - box[1].start))
-            if cells.sum() < ground.least_core:
-                return Region(plane, box, cells)
-            region = Region(fitted(ground.heights[box], cells, box), box, cells)
-        wider = around(box, reach, usable.shape)
-        if wider == box or not _touches_rim(region.cells):
-            return region
+        region = Region(plane, box, cells)
+        first = first or region
+        if np.count_nonzero(cells) < ground.least_core:
+            return first, None
+        plane = fitted(ground.heights[box], cells, box)
+        wider = _wider(box, cells, reach, usable.shape)
+        if settled and wider == box:
+            return first, Region(plane, box, cells).trimmed()
+        settled = wider == box
         box, reach = wider, 2 * reach
+
+
+def _box_of(cell: tuple[int, int]) -> Box:
+    row, column = cell
+    return slice(row, row + 1), slice(column, column + 1)
 
 
 def _extended(
@@ -108,7 +131,7 @@ def _extended(
     kept = np.zeros(count + 1, bool)
     kept[components[before]] = True
     cells = kept[components]
-    return Region(fitted(ground.heights[box], cells, box), box, cells)
+    return Region(fitted(ground.heights[box], cells, box), box, cells).trimmed()
 
 
 def _agreeing(
@@ -117,9 +140,11 @@ def _agreeing(
     """Return which windows in a part of the map lie on a plane and have its slope."""
     bend = BEND * ground.resolution + CERTAIN * ground.noise * windows.slope_share
     rise = ground.noise * (RISE + CERTAIN / windows.size)
-    agree = usable[box] & (np.abs(windows.height[box] - plane.over(box)) <= rise)
+    agree = np.abs(windows.height[box] - plane.over(box)) <= rise
+    agree &= usable[box]
     agree &= np.abs(windows.along_rows[box] - plane.along_rows) <= bend
-    return agree & (np.abs(windows.along_columns[box] - plane.along_columns) <= bend)
+    agree &= np.abs(windows.along_columns[box] - plane.along_columns) <= bend
+    return agree
 
 
 def _with(cells: Bool[np.ndarray, "r c"], seed: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
@@ -138,5 +163,11 @@ def _large(cells: Bool[np.ndarray, "R C"], least: int) -> Bool[np.ndarray, "R C"
     return enough[components]
 
 
-def _touches_rim(cells: Bool[np.ndarray, "r c"]) -> bool:
-    return bool(cells[0].any() or cells[-1].any() or cells[:, 0].any() or cells[:, -1].any())
+def _wider(box: Box, cells: Bool[np.ndarray, "r c"], reach: int, shape: tuple[int, int]) -> Box:
+    """Return a part of a map with more cells on the sides that a region touches."""
+    sides = []
+    for axis, side in enumerate(box):
+        first, last = (bool(cells.take(at, axis).any()) for at in (0, -1))
+        low = max(side.start - reach * first, 0)
+        sides.append(slice(low, min(side.stop + reach * last, shape[axis])))
+    return sides[0], sides[1]

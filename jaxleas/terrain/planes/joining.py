@@ -32,7 +32,7 @@ def regions_of(ground: Growth, owner: Int[np.ndarray, "R C"]) -> list[Region]:
         plane = fitted(ground.heights[box], cells, box)
         gap = np.abs(ground.heights[box] - plane.over(box))
         near = cells & (gap <= TRIMMED * ground.noise)
-        if near.sum() >= 0.5 * cells.sum():
+        if 0.5 * cells.sum() <= near.sum() < cells.sum():
             plane = fitted(ground.heights[box], near, box)
         found.append(Region(plane, box, cells))
     return found
@@ -91,13 +91,11 @@ def _rest(moments: Float[np.ndarray, "P 4 4"]) -> np.ndarray:
 
 def neighbours(owner: Int[np.ndarray, "R C"]) -> Int[np.ndarray, "P 2"]:
     """Return the pairs of regions with cells side by side."""
-    sides = [
-        np.stack([one.reshape(-1), other.reshape(-1)], axis=1)
-        for one, other in ((owner[:-1], owner[1:]), (owner[:, :-1], owner[:, 1:]))
-    ]
-    both = np.concatenate(sides)
-    both = np.sort(both[(both[:, 0] != both[:, 1]) & (both > 0).all(axis=1)], axis=1)
-    return np.unique(both, axis=0)
+    found = []
+    for one, other in ((owner[:-1], owner[1:]), (owner[:, :-1], owner[:, 1:])):
+        differ = (one != other) & (one > 0) & (other > 0)
+        found.append(np.stack([one[differ], other[differ]], axis=1))
+    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
 
 
 def _leader(leader: Int[np.ndarray, " N"], number: int) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Int
 
 from jaxleas.terrain.planes.connected import connected
-from jaxleas.terrain.planes.plane import Box
+from jaxleas.terrain.planes.plane import inner
 from jaxleas.terrain.planes.region import Growth, Region
 
 STANDS_OUT = 5.0
@@ -43,7 +43,7 @@ def pieces(regions: Sequence[Region]) -> list[Region]:
     for region in regions:
         components, _ = connected(region.cells)
         for number, part in enumerate(find_objects(components), start=1):
-            box = _within(region.box, part)
+            box = inner(region.box, part)
             found.append(Region(region.plane, box, components[part] == number))
     return found
 
@@ -67,18 +67,9 @@ def closed(ground: Growth, region: Region, owner: Int[np.ndarray, "R C"], widest
     for number, part in enumerate(find_objects(holes), start=1):
         if part is None or number == beyond:
             continue
-        hole, box = holes[part] == number, _within(region.box, part)
+        hole, box = holes[part] == number, inner(region.box, part)
         gap = np.abs(ground.heights[box] - region.plane.over(box)) / ground.noise
         stands = (owner[box] > 0) | (ground.known[box] & (gap > STANDS_OUT))
         if max(hole.shape) <= widest and not stands[hole].any():
             cells[part] |= hole
     return replace(region, cells=cells)
-
-
-def _within(box: Box, part: Box) -> Box:
-    """Return a part of a box as a part of the map."""
-    rows, columns = (
-        slice(side.start + own.start, side.start + own.stop)
-        for side, own in zip(box, part, strict=True)
-    )
-    return rows, columns

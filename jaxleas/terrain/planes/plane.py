@@ -1,5 +1,6 @@
 """A plane over the cells of a map, and the one that fits heights best."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -24,9 +25,8 @@ class Plane(NamedTuple):
 
     def over(self, box: Box) -> Float[np.ndarray, "R C"]:
         """Return the plane's heights over a part of the map [m]."""
-        rows = np.arange(box[0].start, box[0].stop)[:, None]
-        columns = np.arange(box[1].start, box[1].stop)
-        return self.height + self.along_rows * rows + self.along_columns * columns
+        rows, columns = (np.arange(side.start, side.stop) for side in box)
+        return (self.height + self.along_rows * rows)[:, None] + self.along_columns * columns
 
     def at(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
         """Return the plane's heights at places in cells [m]."""
@@ -42,6 +42,15 @@ def around(box: Box, reach: int, shape: tuple[int, int]) -> Box:
     return rows, columns
 
 
+def inner(box: Box, part: Box) -> Box:
+    """Return a part of a box as a part of the map."""
+    rows, columns = (
+        slice(side.start + int(own.start), side.start + int(own.stop))
+        for side, own in zip(box, part, strict=True)
+    )
+    return rows, columns
+
+
 def fitted(heights: Float[np.ndarray, "R C"], cells: Bool[np.ndarray, "R C"], box: Box) -> Plane:
     """Return the plane with the least squared vertical distances from cells.
 
@@ -50,24 +59,33 @@ def fitted(heights: Float[np.ndarray, "R C"], cells: Bool[np.ndarray, "R C"], bo
         cells: cells that count; at least three, not all on one line.
         box: part of the map that it is.
     """
-    # Sums over rows and columns first: the moments of many cells are those of few sums.
     weight = cells.astype(np.float64)
-    some = weight * heights
-    per_row, per_column = weight.sum(axis=1), weight.sum(axis=0)
-    row_heights, column_heights = some.sum(axis=1), some.sum(axis=0)
-    count = per_row.sum()
-    row, column = np.arange(len(per_row)), np.arange(len(per_column))
-    middle = np.array([per_row @ row, per_column @ column, row_heights.sum()]) / count
-    r, c = row - middle[0], column - middle[1]
-    rr, cc = per_row @ r**2, per_column @ c**2
-    rc = r @ np.einsum("rc,c->r", weight, c)
-    rz, cz = r @ row_heights, c @ column_heights
+    powers = [_powers(count) for count in cells.shape]
+    (n, c, cc), (r, rc, _), (rr, _, _) = _moments(weight, *powers)
+    (z, cz, _), (rz, _, _), _ = _moments(weight * heights, *powers)
+    r, c, z = r / n, c / n, z / n
+    rr, cc, rc = rr - n * r * r, cc - n * c * c, rc - n * r * c
+    rz, cz = rz - n * r * z, cz - n * c * z
     determinant = rr * cc - rc * rc
     if determinant <= 1e-9 * max(rr * cc, 1.0):  # a line of cells has no slope across it
         along_rows, along_columns = rz / max(rr, 1.0), cz / max(cc, 1.0)
     else:
         along_rows = (cc * rz - rc * cz) / determinant
         along_columns = (rr * cz - rc * rz) / determinant
-    first = (box[0].start + middle[0], box[1].start + middle[1])
-    height = middle[2] - along_rows * first[0] - along_columns * first[1]
-    return Plane(float(height), float(along_rows), float(along_columns))
+    row, column = box[0].start + cells.shape[0] // 2 + r, box[1].start + cells.shape[1] // 2 + c
+    return Plane(z - along_rows * row - along_columns * column, along_rows, along_columns)
+
+
+@lru_cache(maxsize=1000)
+def _powers(count: int) -> Float[np.ndarray, "3 N"]:
+    """Return the powers 0 to 2 of numbers about their middle."""
+    number = np.arange(count) - count // 2.0
+    return np.stack([np.ones(count), number, number * number])
+
+
+def _moments(
+    weight: Float[np.ndarray, "r c"], rows: Float[np.ndarray, "3 r"], columns: np.ndarray
+) -> list[list[float]]:
+    """Return the sums of weights times powers of their row (first index) and column."""
+    per_row = np.einsum("rc,pc->rp", weight, columns)  # large matrices, and no threads for them
+    return (rows @ per_row).tolist()

@@ -13,8 +13,10 @@ from jaxleas.terrain.planes.region import Region
 from jaxleas.terrain.planes.rings import rings
 from jaxleas.terrain.polygons import MIN_AREA
 
-FILLED = 0.8, 1.02
-"""Part of an outline's area that its convex parts fill; else the outline crosses itself."""
+FILLED = 0.8
+"""Part of an outline's area that its convex parts fill at least, unless it crosses itself."""
+BEYOND = 4.0
+"""Area by which they may be larger than the outline where it just touches itself [cells^2]."""
 
 
 def polygons_of(
@@ -33,9 +35,9 @@ def polygons_of(
     found = []
     for number in range(1, count + 1):
         around = rings(components == number)
-        parts = _parts([distinct(outline(ring, rest)) for ring in around])
+        parts = parts_of([distinct(outline(ring, rest)) for ring in around])
         if parts is None:  # the outline of the cells never crosses itself
-            parts = _parts([ring.astype(np.float64) for ring in around]) or []
+            parts = parts_of([ring.astype(np.float64) for ring in around]) or []
         found += parts
     enough = max(least, MIN_AREA) / frame.resolution**2
     return [_lifted(region, frame, part) for part in found if area(part) >= enough]
@@ -53,7 +55,7 @@ def _drawn_in(cells: Bool[np.ndarray, "R C"], inset: float) -> tuple[np.ndarray,
     return distance[1:-1, 1:-1] > whole, inset - whole
 
 
-def _parts(outlines: Sequence[Float[np.ndarray, "V 2"]]) -> list[Float[np.ndarray, "W 2"]] | None:
+def parts_of(outlines: Sequence[Float[np.ndarray, "V 2"]]) -> list[Float[np.ndarray, "W 2"]] | None:
     """Return the convex parts of an outline with holes; None if it crosses itself."""
     areas = [area(each) for each in outlines]
     outer = int(np.argmax(areas))
@@ -62,8 +64,7 @@ def _parts(outlines: Sequence[Float[np.ndarray, "V 2"]]) -> list[Float[np.ndarra
     holes = [each for each, its in zip(outlines, areas, strict=True) if its < 0.0]
     parts = convex_parts(outlines[outer], holes)
     whole = areas[outer] + sum(its for its in areas if its < 0.0)
-    least, most = FILLED
-    return parts if least * whole <= sum(map(area, parts)) <= most * whole else None
+    return parts if FILLED * whole <= sum(map(area, parts)) <= whole + BEYOND else None
 
 
 def _lifted(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.terrain.planes.plane import Box, Plane
+from jaxleas.terrain.planes.plane import Box, Plane, inner
 
 CORE = 0.25
 """Part of the cells of the smallest surface that its core has at least."""
@@ -29,6 +29,14 @@ class Region:
     def size(self) -> int:
         """Number of cells."""
         return int(self.cells.sum())
+
+    def trimmed(self) -> "Region":
+        """Return the region in the smallest part of the map that holds its cells."""
+        rows, columns = (np.flatnonzero(self.cells.any(axis=axis)) for axis in (1, 0))
+        if not rows.size:
+            return self
+        part = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        return replace(self, box=inner(self.box, part), cells=self.cells[part])
 
     def lifted(self, height: float) -> "Region":
         """Return the region higher by a number of metres."""

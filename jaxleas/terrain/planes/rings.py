@@ -1,55 +1,56 @@
 """Rings along the edges of cells."""
 
-from collections.abc import Iterator
-
 import numpy as np
 from jaxtyping import Bool, Int
 
-Corner = tuple[int, int]
+STEPS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+"""Steps along sides, the cell to the left: ahead, then each a turn to the left of the last."""
+ACROSS = np.array([[-1, 0], [0, 1], [1, 0], [0, -1]])
+"""Row and column of the neighbour across the side."""
+FIRST = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+"""From the cell to the corner at which the side begins."""
 
 
 def rings(cells: Bool[np.ndarray, "R C"]) -> list[Int[np.ndarray, "N 2"]]:
     """Return closed rings along the edges of cells, the cells to the left of each.
 
     Corner (x, y) is the lower left corner of the cell in column x and row y. The outer ring of
-    cells that share edges runs counter-clockwise; rings of holes run clockwise.
+    cells that share edges runs counter-clockwise; rings of holes run clockwise. Where two rings
+    touch, each turns left and stays on its cell.
     """
-    steps: dict[Corner, list[Corner]] = {}
-    for corner, step in _sides(cells):
-        steps.setdefault(corner, []).append(step)
-    found = []
-    while steps:
-        found.append(np.array(_ring(steps, next(iter(steps)))))
-    return found
+    corner, way = _sides(cells)
+    number = np.full((cells.shape[1] + 1, cells.shape[0] + 1, 4), -1)
+    number[corner[:, 0], corner[:, 1], way] = np.arange(len(way))
+    x, y = (corner + STEPS[way]).T
+    follower = np.full(len(way), -1)
+    for turn in (1, 0, -1):  # left, none, right
+        found = number[x, y, (way + turn) % 4]
+        follower = np.where(follower < 0, found, follower)
+    return [corner[cycle] for cycle in _cycles(follower)]
 
 
-def _sides(cells: Bool[np.ndarray, "R C"]) -> Iterator[tuple[Corner, Corner]]:
-    """Yield the first corner and the step of each side between a cell and what is none."""
+def _sides(cells: Bool[np.ndarray, "R C"]) -> tuple[np.ndarray, np.ndarray]:
+    """Return first corner and number of the step of each side between a cell and what is none."""
     padded = np.pad(cells, 1)
-    # Row and column of the neighbour across the side; from the cell to the side's first corner.
-    for down, right, x, y in ((-1, 0, 0, 0), (0, 1, 1, 0), (1, 0, 1, 1), (0, -1, 0, 1)):
-        rows, columns = cells.shape
+    rows, columns = cells.shape
+    corners, ways = [], []
+    for way, (down, right) in enumerate(ACROSS.tolist()):
         beside = padded[1 + down : 1 + down + rows, 1 + right : 1 + right + columns]
         row, column = np.nonzero(cells & ~beside)
-        step = (-down, right)
-        for corner in zip((column + x).tolist(), (row + y).tolist(), strict=True):
-            yield corner, step
+        corners.append(np.stack([column, row], axis=1) + FIRST[way])
+        ways.append(np.full(len(row), way))
+    return np.concatenate(corners), np.concatenate(ways)
 
 
-def _ring(steps: dict[Corner, list[Corner]], start: Corner) -> list[Corner]:
-    """Return the ring from a corner on; its steps are taken out of `steps`.
-
-    Where two rings touch, the ring turns left and stays on its cell.
-    """
-    ring, here, first = [start], start, steps[start][0]
-    step = first
-    while True:
-        steps[here].remove(step)
-        if not steps[here]:
-            del steps[here]
-        here = (here[0] + step[0], here[1] + step[1])
-        left = (-step[1], step[0])
-        if here == start and (start not in steps or first == left):
-            return ring
-        ring.append(here)
-        step = left if left in steps[here] else steps[here][0]
+def _cycles(follower: Int[np.ndarray, " N"]) -> list[list[int]]:
+    """Return the cycles in which each number follows another."""
+    following, seen, found = follower.tolist(), [False] * len(follower), []
+    for first in range(len(following)):
+        cycle, here = [], first
+        while not seen[here]:
+            seen[here] = True
+            cycle.append(here)
+            here = following[here]
+        if cycle:
+            found.append(cycle)
+    return found

@@ -1,5 +1,6 @@
 """Windowed normals: the plane that fits the heights around each cell best."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -31,8 +32,7 @@ class Windows:
     @property
     def slope_share(self) -> float:
         """Standard deviation of a slope per cell, as a multiple of that of the heights."""
-        step = np.arange(self.size) - self.size // 2
-        return float(1.0 / np.sqrt(self.size * (step**2).sum()))
+        return math.sqrt(12.0 / (self.size**2 * (self.size**2 - 1)))
 
     @property
     def freedom(self) -> int:
@@ -50,20 +50,16 @@ def fit_windows(
         known: which cells have a height.
         size: number of cells along the side of a window, odd.
     """
-    ones = np.ones(size)
     step = np.arange(size, dtype=np.float64) - size // 2
-    weight = known.astype(np.float64)
-    n, r, rr = _sums(weight, (ones, step, step**2), ones)
-    c, rc = _sums(weight, (ones, step), step)
-    (cc,) = _sums(weight, (ones,), step**2)
-    z, rz = _sums(heights, (ones, step), ones)
-    (cz,) = _sums(heights, (ones,), step)
-    (zz,) = _sums(heights**2, (ones,), ones)
-    usable = n >= max(6.0, LEAST_KNOWN * size * size)
-    n = np.maximum(n, 1.0)
-    r, c, z = r / n, c / n, z / n
-    rr, cc, rc = rr / n - r * r, cc / n - c * c, rc / n - r * c
-    rz, cz, zz = rz / n - r * z, cz / n - c * z, zz / n - z * z
+    ones = np.ones(size)
+    n, (r, c), (rr, cc, rc) = _places(known, step)
+    (z, rz), (cz,) = (_means(heights, (ones, step), ones), _means(heights, (ones,), step))
+    (zz,) = _means(heights**2, (ones,), ones)
+    count = np.rint(size**2 * n)
+    usable = count >= max(6.0, LEAST_KNOWN * size**2)
+    n = np.maximum(n, 1.0 / size**2)
+    z, rz, cz, zz = z / n, rz / n, cz / n, zz / n
+    rz, cz, zz = rz - r * z, cz - c * z, zz - z * z
     determinant = rr * cc - rc * rc
     usable &= determinant > 1e-6
     determinant = np.where(usable, determinant, np.nan)
@@ -75,18 +71,52 @@ def fit_windows(
         height=z - along_rows * r - along_columns * c,
         along_rows=along_rows,
         along_columns=along_columns,
-        deviation=np.sqrt(rest * n / np.maximum(n - 3.0, 1.0)),
+        deviation=np.sqrt(rest * (count / np.maximum(count - 3.0, 1.0))),
     )
 
 
-def _sums(
+def _places(
+    known: Bool[np.ndarray, "R C"], step: Float[np.ndarray, " S"]
+) -> tuple[np.ndarray, Sequence[np.ndarray], Sequence[np.ndarray]]:
+    """Return where the known cells of each window lie about its middle.
+
+    Returns:
+        Their share of the window; the means of their rows and columns; the variances of both and
+        the covariance. Shapes that broadcast to that of the map.
+    """
+    powers = [step**power for power in range(3)]
+    if known.all():  # rows and columns on their own
+        rows, columns = (
+            [_mean(np.ones(count), each, 0) for each in powers] for count in known.shape
+        )
+        n = rows[0][:, None] * columns[0]
+        r, rr = (each[:, None] / rows[0][:, None] for each in rows[1:])
+        c, cc = (each / columns[0] for each in columns[1:])
+        rc = r * c
+    else:
+        weight = known.astype(np.float64)
+        n, r, rr = _means(weight, powers, powers[0])
+        c, rc = _means(weight, powers[:2], step)
+        (cc,) = _means(weight, powers[:1], powers[2])
+        some = np.maximum(n, 1.0 / len(step) ** 2)
+        r, c, rr, cc, rc = (each / some for each in (r, c, rr, cc, rc))
+    return n, (r, c), (rr - r * r, cc - c * c, rc - r * c)
+
+
+def _means(
     values: Float[np.ndarray, "R C"], over_rows: Sequence[np.ndarray], over_columns: np.ndarray
 ) -> list[Float[np.ndarray, "R C"]]:
-    """Return sums over the window of each cell, one for each of the weights over rows.
+    """Return weighted means over the window of each cell, one for each of the weights over rows.
 
-    Nothing lies beyond the map.
+    What lies beyond the map is zero.
     """
-    from scipy.ndimage import correlate1d
+    partial = _mean(values, over_columns, axis=1)
+    return [_mean(partial, weights, axis=0) for weights in over_rows]
 
-    partial = correlate1d(values, over_columns, axis=1, mode="constant")
-    return [correlate1d(partial, weights, axis=0, mode="constant") for weights in over_rows]
+
+def _mean(values: np.ndarray, weights: Float[np.ndarray, " S"], axis: int) -> np.ndarray:
+    from scipy.ndimage import correlate1d, uniform_filter1d
+
+    if (weights == 1.0).all():
+        return uniform_filter1d(values, len(weights), axis=axis, mode="constant")
+    return correlate1d(values, weights / len(weights), axis=axis, mode="constant")

@@ -7,6 +7,7 @@ from scipy.spatial import ConvexHull
 from jaxleas.terrain.planes.assigning import KERNEL, LOYAL, NO_PLANE, OUTLIER, assign
 from jaxleas.terrain.planes.convex_parts import area, convex_parts
 from jaxleas.terrain.planes.plane import Plane, fitted
+from jaxleas.terrain.planes.polygons import parts_of
 from jaxleas.terrain.planes.region import Growth, Region
 from jaxleas.terrain.planes.rings import rings
 from jaxleas.terrain.planes.windows import fit_windows
@@ -125,3 +126,15 @@ def test_convex_parts_fill_a_polygon_around_its_holes():
             assert 0.85 * whole <= filled <= whole * (1.0 + 1e-9)
             for part in parts:
                 assert area(part) == pytest.approx(ConvexHull(part).volume)
+
+
+def square(low: float, high: float, turn: int) -> np.ndarray:
+    return np.array([[low, low], [high, low], [high, high], [low, high]])[::turn]
+
+
+def test_an_outline_that_its_hole_crosses_is_no_outline():
+    outer, inside, across = square(0.0, 300.0, 1), square(10.0, 30.0, -1), square(290.0, 310.0, -1)
+    parts = parts_of([outer, inside])
+    assert parts is not None
+    assert sum(map(area, parts)) == pytest.approx(300.0**2 - 20.0**2)
+    assert parts_of([outer, across]) is None
