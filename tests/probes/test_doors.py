@@ -29,7 +29,9 @@ BOTH = pytest.mark.parametrize("task", [pytest.param(DRIFT, marks=pytest.mark.sl
 
 def train(*arguments: object, **options) -> subprocess.CompletedProcess:
     command = [sys.executable, "train.py", "--devices", "1", *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true"}
+    # It runs for longer than it compiles.
+    flags = os.environ["XLA_FLAGS"].replace("optimization_level=0", "optimization_level=1")
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true", "XLA_FLAGS": flags}
     return subprocess.run(
         command, cwd=ROOT, env=environment, capture_output=True, text=True, **options
     )
@@ -95,7 +97,9 @@ def test_killed_and_resumed_it_ends_as_if_never_killed(runs, task, tmp_path):
     folder = tmp_path / "killed"
     command = [sys.executable, "train.py", "--devices", "1", str(write(tmp_path, task))]
     command += ["--run-dir", str(folder), "--allow", task]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true"}
+    # It runs for longer than it compiles.
+    flags = os.environ["XLA_FLAGS"].replace("optimization_level=0", "optimization_level=1")
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true", "XLA_FLAGS": flags}
     process = subprocess.Popen(command, cwd=ROOT, env=environment, stderr=subprocess.DEVNULL)
     checkpoints = folder / "checkpoints"
     while process.poll() is None and len(list(checkpoints.glob("step_*.npz"))) < 2:
@@ -206,7 +210,9 @@ def test_the_task_of_the_documentation_trains(tmp_path):
     for name, body in re.findall(r"<!-- file: (\S+) -->\n```\w+\n(.*?)^```", page, re.M | re.S):
         (tmp_path / name).write_text(body)
     command = [sys.executable, ROOT / "train.py", "stride.yaml", "--run-dir", "runs/stride"]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true"}
+    # It runs for longer than it compiles.
+    flags = os.environ["XLA_FLAGS"].replace("optimization_level=0", "optimization_level=1")
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "CI": "true", "XLA_FLAGS": flags}
     done = subprocess.run(
         [*map(str, command), "--allow", "stride:Stride", "--devices", "1"],
         cwd=tmp_path,

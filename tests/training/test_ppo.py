@@ -35,7 +35,7 @@ SMALL = {
 def learn(config, task, world):
     """Train, and return the final state, its metrics, and the networks."""
     networks = make_networks(config.network, task.signature)
-    state = initial_state(config, task, world, networks)
+    state = jax.jit(lambda world: initial_state(config, task, world, networks))(world)
     train_step, history, traces = make_train_step(config, task, networks), [], 0
 
     def counted(world, state):
