@@ -44,7 +44,7 @@ COMMANDS = {
         "write a policy as ONNX and StableHLO, checked",
     ),
     "plan": ("jaxleas.contacts.commands", "plan", "plan the contacts of a problem file"),
-    "check": ("jaxleas.contacts.commands", "check", "certify a contact plan, in metres"),
+    "check": ("jaxleas.contacts.check_command", "check", "certify a contact plan, in metres"),
     "contacts": ("jaxleas.contacts.commands", "contacts", "plan contacts along a guide path"),
     "contacts export": (
         "jaxleas.contacts.sequence.commands",

@@ -1,21 +1,14 @@
-"""The functions behind `jaxleas plan`, `check` and `contacts`."""
+"""The functions behind `jaxleas plan` and `jaxleas contacts`."""
 
 from pathlib import Path
 from typing import Any
 
 from jaxleas.contacts.along_guide import plan_along
-from jaxleas.contacts.checking import (
-    NotCertifiedError,
-    along_roots,
-    check_footholds,
-    check_postures,
-    check_trunk,
-    followed_by,
-)
+from jaxleas.contacts.checking import along_roots
 from jaxleas.contacts.from_guide import Candidates, Stepping, problem_from_guide
 from jaxleas.contacts.models import model_note
-from jaxleas.contacts.plan import ContactPlan, read_plan
-from jaxleas.contacts.plan_report import draw, report_plan
+from jaxleas.contacts.plan import ContactPlan
+from jaxleas.contacts.plan_report import report_plan
 from jaxleas.contacts.planner import AskedGuide, Planner
 from jaxleas.contacts.planner_settings import plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
@@ -32,7 +25,6 @@ from jaxleas.terrain import (
 )
 from jaxleas.types import InputError
 
-__all__ = ["NotCertifiedError", "check", "contacts", "plan"]
 NO_OBSTACLES = (
     "a problem file states no obstacles: whether the trunk touches any was not looked at; jaxleas"
     " contacts, and check with --guide and --scene, look"
@@ -81,58 +73,6 @@ def plan(
     if answer.feasible:
         print(NO_OBSTACLES)
     return answer
-
-
-def check(
-    plan: Path,
-    problem: Path | None = None,
-    *,
-    guide: Path | None = None,
-    scene: Path | None = None,
-    query: int = 0,
-    robot: str | None = None,
-    picture: Path | None = None,
-    reading: Reading = READING,
-    search: PlaneSearch = PLANE_SEARCH,
-) -> None:
-    """Recompute every constraint on a plan, in metres.
-
-    Args:
-        plan: the contact plan, .json.
-        problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
-        guide: the guide path it follows, .npz; of any planner but sampling, the trunk
-            is checked.
-        scene: the scene it crosses, .json, a mesh or a map; with --guide.
-        query: number of the path in the guide's file.
-        robot: robot of a plan that follows a guide; by default the one that walked the
-            guide path, or talos where its file does not say.
-        picture: draw the plan from above and from the side (.png, .svg, .pdf).
-        reading: what the scene's file does not state itself.
-        search: what counts as a surface, if the scene is a map.
-    """
-    read = read_plan(plan)
-    if scene is None and (reading != READING or search.given):
-        raise InputError("options of a terrain file were given without --scene, which they are of")
-    if picture is not None:
-        _require_writable_names(Path("plan.json"), picture)
-    ground = None if scene is None else load_scene(scene, reading, search)
-    if read.postures is not None:
-        asked = followed_by(plan, problem, guide, ground, query, robot)
-        check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
-        return
-    if problem is None:
-        raise InputError(
-            f"{plan} is of the {read.planner} planner: say which problem it answers:"
-            f" jaxleas check {plan} PROBLEM.json"
-        )
-    asked = read_problem(problem)
-    if picture is not None:
-        draw(picture, asked, read)
-    tightest = check_footholds(plan, read, problem, asked)
-    trunk = check_trunk(plan, guide, ground, query, robot)
-    print(
-        f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {tightest}); {trunk}"
-    )
 
 
 def contacts(

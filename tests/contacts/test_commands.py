@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxleas import cli
-from jaxleas.contacts.commands import NotCertifiedError
+from jaxleas.contacts.checking import NotCertifiedError
 from jaxleas.contacts.pictures import draw_plan, failing_candidates
 from jaxleas.contacts.plan import read_plan
 from jaxleas.contacts.problem_file import read_problem

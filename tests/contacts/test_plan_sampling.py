@@ -11,7 +11,7 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.contacts import certify_postures, plan_sampling, read_plan, write_plan
-from jaxleas.contacts.commands import NotCertifiedError
+from jaxleas.contacts.checking import NotCertifiedError
 from jaxleas.contacts.plan_sampling import problem_of_steps
 from jaxleas.contacts.posture_limbs import about, chain
 from jaxleas.contacts.problem import FootPose

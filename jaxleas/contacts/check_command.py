@@ -1,0 +1,69 @@
+"""The function behind `jaxleas check`."""
+
+from pathlib import Path
+
+from jaxleas.contacts.checking import check_footholds, check_postures, check_trunk, followed_by
+from jaxleas.contacts.plan import read_plan
+from jaxleas.contacts.plan_report import draw
+from jaxleas.contacts.problem_file import read_problem
+from jaxleas.terrain import (
+    PLANE_SEARCH,
+    READING,
+    PlaneSearch,
+    Reading,
+    load_scene,
+    require_picture,
+)
+from jaxleas.types import InputError
+
+
+def check(
+    plan: Path,
+    problem: Path | None = None,
+    *,
+    guide: Path | None = None,
+    scene: Path | None = None,
+    query: int = 0,
+    robot: str | None = None,
+    picture: Path | None = None,
+    reading: Reading = READING,
+    search: PlaneSearch = PLANE_SEARCH,
+) -> None:
+    """Recompute every constraint on a plan, in metres.
+
+    Args:
+        plan: the contact plan, .json.
+        problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
+        guide: the guide path it follows, .npz; of any planner but sampling, the trunk
+            is checked.
+        scene: the scene it crosses, .json, a mesh or a map; with --guide.
+        query: number of the path in the guide's file.
+        robot: robot of a plan that follows a guide; by default the one that walked the
+            guide path, or talos where its file does not say.
+        picture: draw the plan from above and from the side (.png, .svg, .pdf).
+        reading: what the scene's file does not state itself.
+        search: what counts as a surface, if the scene is a map.
+    """
+    read = read_plan(plan)
+    if scene is None and (reading != READING or search.given):
+        raise InputError("options of a terrain file were given without --scene, which they are of")
+    if picture is not None:
+        require_picture(picture)
+    ground = None if scene is None else load_scene(scene, reading, search)
+    if read.postures is not None:
+        asked = followed_by(plan, problem, guide, ground, query, robot)
+        check_postures(plan, read, asked, str(problem or f"{guide} on {scene}"), picture)
+        return
+    if problem is None:
+        raise InputError(
+            f"{plan} is of the {read.planner} planner: say which problem it answers:"
+            f" jaxleas check {plan} PROBLEM.json"
+        )
+    asked = read_problem(problem)
+    if picture is not None:
+        draw(picture, asked, read)
+    tightest = check_footholds(plan, read, problem, asked)
+    trunk = check_trunk(plan, guide, ground, query, robot)
+    print(
+        f"{plan} is certified: {len(asked)} steps, nothing violated (tightest: {tightest}); {trunk}"
+    )
