@@ -40,20 +40,23 @@ class Agreement:
     largest_gap: float
 
 
-def compare(triangles: Float[np.ndarray, "N 3 3"], scene: Scene) -> Agreement:
+def compare(
+    points: Float[np.ndarray, "P 3"], left_out: Sequence[Float[np.ndarray, "V 3"]], scene: Scene
+) -> Agreement:
     """Return how a scene agrees with the height map of the mesh that it is made of.
 
     Args:
-        triangles: triangles of the mesh [m].
-        scene: scene made of them.
+        points: vertices of the mesh [m].
+        left_out: faces of the mesh that the scene lacks, as convex polygons [m].
+        scene: scene made of the other faces.
     """
-    low, high = bounds(triangles)
+    low, high = bounds(points)
     across = (high - low)[:2].max()
     resolution = min(max(DEFAULT_RESOLUTION, float(across) / _CELLS_ACROSS), 0.5)
-    # A triangle without area keeps both maps in one frame.
-    frame = np.array([low, high, high])
-    ground = _heights(np.concatenate([triangles, frame[None]]), resolution)
-    seen = _heights([*scene.surfaces.values(), *scene.obstacles.values(), frame], resolution)
+    # Triangles without area or sides keep both maps in one frame.
+    frame = [np.tile(corner, (3, 1)) for corner in (low, high)]
+    seen = _heights([*scene.surfaces.values(), *scene.obstacles.values(), *frame], resolution)
+    ground = np.fmax(seen, _heights([*left_out, *frame], resolution))  # a NaN is no ground
     some = is_ground(ground)
     gap = np.where(is_ground(seen), np.clip(ground - seen, 0.0, SAME), SAME)[some]
     differs = some & ~(ground - seen < SAME)
@@ -84,7 +87,5 @@ def require_agreement(path: str | Path, found: Agreement) -> None:
         )
 
 
-def _heights(
-    polygons: Sequence[np.ndarray] | np.ndarray, resolution: float
-) -> Float[np.ndarray, "R C"]:
+def _heights(polygons: Sequence[np.ndarray], resolution: float) -> Float[np.ndarray, "R C"]:
     return rasterise_polygons(polygons, resolution, 0.0, _GROW).heights

@@ -10,6 +10,11 @@ from jaxleas.terrain.polygons import VERTICAL_SLOPE
 _BATCH = 200_000  # polygons at a time, to save memory
 
 
+def lengths(vectors: Float[np.ndarray, "*N K"]) -> Float[np.ndarray, "*N"]:
+    """Return the lengths of many short vectors; several times as fast as `np.linalg.norm`."""
+    return np.sqrt(np.einsum("...k,...k->...", vectors, vectors))
+
+
 def area_vectors(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "N 3"]:
     """Return Newell's vectors: along the right-hand normals, as long as the areas [m^2]."""
     areas = np.empty((len(polygons), 3))

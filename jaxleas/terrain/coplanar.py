@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.terrain.areas import area_vectors
+from jaxleas.terrain.areas import area_vectors, lengths
 from jaxleas.terrain.deviations import convexity_deviations, planarity_deviations
 from jaxleas.terrain.half_edges import HalfEdges, facing_sides
 from jaxleas.terrain.merging import merge
@@ -51,18 +51,19 @@ def merged(points: Float[np.ndarray, "P 3"], triangles: Int[np.ndarray, "N 3"]) 
         triangles: corners of each triangle.
     """
     area = area_vectors(points[triangles])
-    normals = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-12)
+    size = lengths(area)
+    normals = area / np.maximum(size, 1e-12)[:, None]
     pairs, plane = _on_planes(points, triangles, area, normals)
     alone = np.ones(len(triangles), bool)
     alone[pairs // 3] = False
     some = np.flatnonzero(~alone)
-    alone &= _has_corners(points[triangles], area)
+    alone &= _has_corners(points[triangles], size)
     index = np.zeros(len(triangles), np.int32)
     index[some] = np.arange(len(some))
     pairs = index[pairs // 3] * 3 + pairs % 3
     plane = plane[some]
     del area, normals  # of a large mesh much memory
-    polygons, failed = _polygons(points, triangles[some], plane, pairs)
+    polygons, failed = _polygons(points, triangles[some], plane, pairs, size[some])
     alone[some[failed]] = True
     return Merged(polygons, points[triangles[alone]])
 
@@ -72,8 +73,12 @@ def _polygons(
     triangles: Int[np.ndarray, "T 3"],
     normals: Float[np.ndarray, "T 3"],
     pairs: Int[np.ndarray, "E 2"],
+    size: Float[np.ndarray, " T"],
 ) -> tuple[list[np.ndarray], Bool[np.ndarray, " T"]]:
-    """Return merged faces, and which triangles would make one that is no convex polygon."""
+    """Return merged faces, and which triangles would make one that is no convex polygon.
+
+    A polygon is convex, on a plane, and as large as its triangles together.
+    """
     borders = HalfEdges(triangles, pairs)
     leader = merge(points, borders, normals, _in_order(points, borders, pairs[:, 0]), SLACK)
     borders.simplify(points, SLACK)
@@ -81,13 +86,16 @@ def _polygons(
     face, at = np.unique(leader[sides // 3], return_index=True)
     vertices, counts = borders.loops(sides[at])
     begin = np.cumsum(counts) - counts
-    good = np.zeros(len(face), bool)
+    good, whole = np.zeros(len(face), bool), np.bincount(leader, size)[face]
     for count in np.unique(counts[counts >= 3]):
         members = np.flatnonzero(counts == count)
         corners = points[vertices[begin[members, None] + np.arange(count)]]
+        around = lengths(corners - np.roll(corners, -1, axis=1)).sum(axis=1)
+        differ = np.abs(lengths(area_vectors(corners)) - whole[members])
         good[members] = (planarity_deviations(corners) <= OFF_PLANE) & (
             convexity_deviations(corners) <= 0.1 * CONVEXITY_TOLERANCE
         )
+        good[members] &= differ <= OFF_PLANE * around
     corners = points[vertices]
     ends = zip(begin[good].tolist(), (begin + counts)[good].tolist(), strict=True)
     bad = np.ones(len(triangles), bool)
@@ -104,7 +112,7 @@ def _in_order(
     their own order those of a row would be asked one after another, not many at once.
     """
     ways = points[borders.end[sides]] - points[borders.origin[sides]]
-    length = np.maximum(np.linalg.norm(ways, axis=1), 1e-12)
+    length = np.maximum(lengths(ways), 1e-12)
     size = np.clip(np.floor(np.log2(length) * LENGTHS), -SHORTEST, SHORTEST)
     ways = np.round(ways / length[:, None] * DIRECTIONS).astype(np.int64) @ [2**16, 2**8, 1]
     chance = np.random.default_rng(0).integers(2**31, size=len(sides))
@@ -157,19 +165,21 @@ def _plane_of(
     """Return the unit normal of sets of triangles, and their largest distance from a plane [m]."""
     normal = np.stack([np.bincount(label, each, count) for each in area.T], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    height = np.einsum("tck,tk->tc", corners, normal[label])
+    upward = normal[label]
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(low, label, height.min(axis=1))
-    np.maximum.at(high, label, height.max(axis=1))
+    for corner in range(3):
+        height = np.einsum("tk,tk->t", corners[:, corner], upward)
+        np.minimum.at(low, label, height)
+        np.maximum.at(high, label, height)
     return normal, 0.5 * (high - low)
 
 
 def _has_corners(
-    triangles: Float[np.ndarray, "N 3 3"], area: Float[np.ndarray, "N 3"]
+    triangles: Float[np.ndarray, "N 3 3"], size: Float[np.ndarray, " N"]
 ) -> Bool[np.ndarray, " N"]:
     """Return which triangles have three corners, none of them on a straight side."""
-    length = np.stack(
-        [np.linalg.norm(triangles[:, k - 2] - triangles[:, k], axis=1) for k in range(3)], axis=1
-    )
-    double = 2.0 * np.linalg.norm(area, axis=1)
-    return (double[:, None] > STRAIGHT * length * np.roll(length, -1, axis=1)).all(axis=1)
+    length = [lengths(triangles[:, k - 2] - triangles[:, k]) for k in range(3)]
+    straight = np.zeros(len(triangles), bool)
+    for one, other in ((0, 1), (1, 2), (2, 0)):
+        straight |= 2.0 * size <= STRAIGHT * length[one] * length[other]
+    return ~straight

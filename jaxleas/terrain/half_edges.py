@@ -7,6 +7,8 @@ of `following[h]`; `twin[h]` runs the other way along the face behind it, or is 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from jaxleas.terrain.areas import lengths
+
 Sides = Int[np.ndarray, " H"]
 
 
@@ -158,7 +160,7 @@ class HalfEdges:
         last = self.following[ahead]
         start = points[self.origin[sides]]
         way, rest = points[self.origin[last]] - start, points[self.origin[ahead]] - start
-        length = np.maximum(np.linalg.norm(way, axis=1), 1e-12)
+        length = np.maximum(lengths(way), 1e-12)
         along = np.einsum("hk,hk->h", way, rest) / length
         off = np.einsum("hk,hk->h", rest, rest) - along**2
         spare = self.following[last] != sides

@@ -23,7 +23,7 @@ from jaxleas.terrain.mesh_scene import read_placed_scene
 from jaxleas.terrain.meshes import read_triangles
 from jaxleas.terrain.rasterise import (
     DEFAULT_RESOLUTION,
-    padded_polygons,
+    padded_groups,
     rasterise,
     rasterise_polygons,
 )
@@ -106,7 +106,7 @@ def _mesh_map(path: Path, how: Reading) -> HeightMap:
     triangles = read_triangles(path, how)
     height_map = rasterise_polygons(triangles, resolution, MESH_MARGIN, SEAM, where=str(path))
     require_usable(height_map.heights, resolution, path)
-    say_losses(path, losses(_outward(triangles), height_map), resolution)
+    say_losses(path, losses([_outward(triangles)], height_map), resolution)
     return height_map
 
 
@@ -115,7 +115,7 @@ def _scene_map(path: Path, how: Reading) -> HeightMap:
     resolution = _cell(path, how)
     scene = read_placed_scene(path, how)
     height_map = rasterise(scene, resolution)
-    say_losses(path, losses(padded_polygons(scene.polygons), height_map), resolution)
+    say_losses(path, losses(padded_groups(scene.polygons), height_map), resolution)
     return height_map
 
 

@@ -1,6 +1,7 @@
 """What a height map cannot hold of a terrain: things thinner than a cell, ground under others."""
 
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -8,7 +9,7 @@ from typing import cast
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.terrain.areas import area_vectors
+from jaxleas.terrain.areas import area_vectors, lengths
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.polygons import VERTICAL_SLOPE
 from jaxleas.terrain.rasterise import covered_cells
@@ -39,16 +40,16 @@ class Losses:
     headroom: float = 0.0
 
 
-def losses(corners: Float[np.ndarray, "N V 3"], height_map: HeightMap) -> Losses:
+def losses(groups: Sequence[Float[np.ndarray, "N V 3"]], height_map: HeightMap) -> Losses:
     """Return what a map lacks of the polygons that it is made of.
 
     Args:
-        corners: corners of the polygons; they look up where they are counter-clockwise seen from
-            above [m].
+        groups: polygons (`padded_groups`); they look up where they are counter-clockwise seen
+            from above [m].
         height_map: their height map.
     """
-    thin, thin_height = _thin(corners.reshape(-1, 3), height_map)
-    covered, headroom = _covered(corners, height_map)
+    thin, thin_height = _thin(np.concatenate([each.reshape(-1, 3) for each in groups]), height_map)
+    covered, headroom = _covered(groups, height_map)
     return Losses(thin, thin_height, covered, headroom)
 
 
@@ -98,12 +99,14 @@ def _thin(points: Float[np.ndarray, "P 3"], height_map: HeightMap) -> tuple[int,
     return count, float(height)
 
 
-def _covered(corners: Float[np.ndarray, "N V 3"], height_map: HeightMap) -> tuple[float, float]:
+def _covered(
+    groups: Sequence[Float[np.ndarray, "N V 3"]], height_map: HeightMap
+) -> tuple[float, float]:
     """Return area and height of free space between faces that look up and down over them."""
-    area = area_vectors(corners)
-    upward = area[:, 2] / np.maximum(np.linalg.norm(area, axis=1), 1e-300)
-    down, up = corners[upward < -VERTICAL_SLOPE], corners[upward > VERTICAL_SLOPE]
-    if not (len(down) and len(up)):
+    upward = [_upward(each) for each in groups]
+    pairs = list(zip(groups, upward, strict=True))
+    down, up = ([each[sign * its > VERTICAL_SLOPE] for each, its in pairs] for sign in (-1.0, 1.0))
+    if not (any(map(len, down)) and any(map(len, up))):
         return 0.0, 0.0
     ceiling = np.full(height_map.heights.size, -np.inf)
     ground = np.full(height_map.heights.size, -np.inf)
@@ -124,6 +127,12 @@ def _covered(corners: Float[np.ndarray, "N V 3"], height_map: HeightMap) -> tupl
         return 0.0, 0.0
     space = (ceiling - ground)[free].max()
     return float(free.sum()) * height_map.resolution**2, float(space)
+
+
+def _upward(polygons: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, " N"]:
+    """Return the upward parts of unit normals."""
+    area = area_vectors(polygons)
+    return area[:, 2] / np.maximum(lengths(area), 1e-300)
 
 
 def _cells(

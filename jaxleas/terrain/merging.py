@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from jaxleas.terrain.areas import lengths
 from jaxleas.terrain.half_edges import HalfEdges, once
 
 
@@ -90,4 +91,4 @@ def _bend(corner: list[Float[np.ndarray, "E 3"]], normals: Float[np.ndarray, "E 
     (ax, ay, az), (bx, by, bz) = (corner[1] - corner[0]).T, (corner[2] - corner[1]).T
     nx, ny, nz = normals.T
     turn = nx * (ay * bz - az * by) + ny * (az * bx - ax * bz) + nz * (ax * by - ay * bx)
-    return turn / np.maximum(np.linalg.norm(corner[2] - corner[0], axis=1), 1e-12)
+    return turn / np.maximum(lengths(corner[2] - corner[0]), 1e-12)

@@ -2,7 +2,7 @@
 
 import logging
 from dataclasses import replace
-from itertools import chain, compress
+from itertools import compress
 from pathlib import Path
 
 import numpy as np
@@ -52,14 +52,13 @@ def mesh_to_scene(
     """
     stated = {"up": up, "scale": scale}
     reading = replace(reading, **{name: each for name, each in stated.items() if each is not None})
-    triangles = read_triangles(path, reading)
-    points, faces = welded(triangles)
-    scene = _scene(points, faces, str(path))
-    found = compare(triangles, scene)
+    points, faces = welded(read_triangles(path, reading))
+    scene, left_out = _scene(points, faces, str(path))
+    found = compare(points, left_out, scene)
     oriented = orient(points, faces) if found.largest_gap > SEEN_WHOLE else None
     if oriented is not None and oriented.turned:
-        turned = _scene(points, oriented.faces, str(path))
-        after = compare(triangles, turned)
+        turned, left_out = _scene(points, oriented.faces, str(path))
+        after = compare(points, left_out, turned)
         if after.mean_gap < found.mean_gap:  # bodies that pierce each other can mislead
             scene, found = turned, after
             _LOG.warning(
@@ -72,8 +71,14 @@ def mesh_to_scene(
     return scene if reading.crop is None else cropped_scene(scene, reading.crop, str(path))
 
 
-def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"], where: str) -> Scene:
-    """Return the faces that look up or sideways, merged: surfaces to stand on, and obstacles."""
+def _scene(
+    points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"], where: str
+) -> tuple[Scene, list[Float[np.ndarray, "V 3"]]]:
+    """Return the faces that look up or sideways, merged: surfaces to stand on, and obstacles.
+
+    Returns:
+        The scene; and the faces that it lacks, merged as well.
+    """
     found = merged(points, faces)
     area = np.concatenate([area_vectors_of(found.polygons), area_vectors(found.triangles)])
     size = np.linalg.norm(area, axis=1)
@@ -85,13 +90,13 @@ def _scene(points: Float[np.ndarray, "P 3"], faces: Int[np.ndarray, "N 3"], wher
             " it as a height map, in which surfaces are found; or give --crop, or decimate it"
         )
     surfaces, obstacles = {}, {}
-    polygons = chain(found.polygons, found.triangles)
+    polygons = [*found.polygons, *found.triangles]
     for vertices, slope in zip(compress(polygons, kept), upward[kept].tolist(), strict=True):
         if slope >= STANDING_SLOPE:
             surfaces[f"surface_{len(surfaces)}"] = vertices
         else:
             obstacles[f"obstacle_{len(obstacles)}"] = vertices
-    return Scene(surfaces, obstacles)
+    return Scene(surfaces, obstacles), list(compress(polygons, ~kept))
 
 
 def read_placed_scene(path: str | Path, reading: Reading) -> Scene:

@@ -20,7 +20,7 @@ CLOSING = 0.01
 and otherwise the seams between tiles and steps would be one-cell cracks of void."""
 BLOCK = 64
 """Largest side of the blocks into which polygons are cut, to save memory [cells]."""
-BATCH_CELLS, BATCH_POLYGONS = 1_000_000, 200_000
+BATCH_CELLS, BATCH_POLYGONS, BATCH_CORNERS = 1_000_000, 200_000, 4_000_000
 
 
 def rasterise(
@@ -72,8 +72,10 @@ def rasterise_polygons(
     polygons that the map does not hold otherwise, the upper edge counts.
     """
     require_resolution(resolution, where)
-    padded = padded_polygons(polygons)
-    lowest, highest = bounds(padded)
+    groups = padded_groups(polygons)
+    sides = [bounds(each) for each in groups]
+    lowest = np.min([low for low, _ in sides], axis=0)
+    highest = np.max([high for _, high in sides], axis=0)
     low = np.floor((lowest[:2] - margin) / resolution)
     high = np.ceil((highest[:2] + margin) / resolution)
     columns, rows = (high - low).tolist()
@@ -86,26 +88,30 @@ def rasterise_polygons(
     heights = np.full(int(rows) * int(columns), -np.inf, dtype=np.float32)
     shape, place = (int(rows), int(columns)), (float(origin[0]), float(origin[1]))
     frame = HeightMap(heights.reshape(shape), resolution, place)
-    for cell, z in covered_cells(padded, frame, grow):
+    for cell, z in covered_cells(groups, frame, grow):
         np.maximum.at(heights, cell, z.astype(np.float32))
-    raise_sheets(frame.heights, padded, origin, resolution)
+    raise_sheets(frame.heights, groups, origin, resolution)
     heights[np.isneginf(heights)] = np.nan
     return frame
 
 
 def covered_cells(
-    polygons: Float[np.ndarray, "N V 3"], frame: HeightMap, grow: float = 0.0
+    groups: Sequence[Float[np.ndarray, "N V 3"]], frame: HeightMap, grow: float = 0.0
 ) -> Iterator[tuple[Int[np.ndarray, " K"], Float[np.ndarray, " K"]]]:
     """Yield flat indices of cells whose middles lie under a polygon, and its heights there [m].
 
     Args:
-        polygons: convex polygons, vertical ones among them are left out [m].
+        groups: convex polygons (`padded_groups`), vertical ones among them are left out [m].
         frame: a map with the cells; its heights do not matter.
         grow: length by which the sides are moved outwards [m].
     """
     rows, columns = frame.shape
-    for start in range(0, len(polygons), BATCH_POLYGONS):
-        some = polygons[start : start + BATCH_POLYGONS]
+    batches = (
+        each[start : start + BATCH_POLYGONS]
+        for each in groups
+        for start in range(0, len(each), BATCH_POLYGONS)
+    )
+    for some in batches:
         some = some[_may_cover(some, frame, grow)]
         planes = _planes(some, np.array(frame.origin), frame.resolution, grow)
         for size, chosen, corner in _batches(planes, rows, columns):
@@ -137,6 +143,23 @@ class _Planes(NamedTuple):
     height: Float[np.ndarray, " N"]
     first: Int[np.ndarray, "N 2"]
     last: Int[np.ndarray, "N 2"]
+
+
+def padded_groups(
+    polygons: Sequence[np.ndarray] | np.ndarray,
+) -> list[Float[np.ndarray, "N V 3"]]:
+    """Return padded polygons; of very many, those of about as many corners together.
+
+    One polygon of a thousand corners among a hundred thousand of four would fill the memory.
+    """
+    if isinstance(polygons, np.ndarray):
+        return [padded_polygons(polygons)]
+    count = np.array([len(vertices) for vertices in polygons])
+    if count.max() * len(count) <= BATCH_CORNERS:
+        return [padded_polygons(polygons)]
+    size = np.ceil(np.log2(count))
+    members = [np.flatnonzero(size == each).tolist() for each in np.unique(size)]
+    return [padded_polygons([polygons[index] for index in each]) for each in members]
 
 
 def padded_polygons(

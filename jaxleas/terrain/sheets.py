@@ -1,6 +1,6 @@
 """Vertical faces in a height map: what no cell centre lies under is drawn by its upper edge."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -22,7 +22,7 @@ _CROSSINGS = 2_000_000  # of edges and sides of cells at a time, to save memory
 
 def raise_sheets(
     heights: Float[np.ndarray, "R C"],
-    polygons: Float[np.ndarray, "N V 3"],
+    polygons: Sequence[Float[np.ndarray, "N V 3"]],
     origin: Float[np.ndarray, " 2"],
     resolution: float,
 ) -> Bool[np.ndarray, "R C"]:
@@ -34,7 +34,7 @@ def raise_sheets(
 
     Args:
         heights: heights of the cells [m], -inf where there is no ground; changed in place.
-        polygons: all polygons; those that are not vertical have been drawn [m].
+        polygons: all polygons, in groups; those that are not vertical have been drawn [m].
         origin: middle of cell (0, 0) [m].
         resolution: edge of a cell [m].
 
@@ -42,8 +42,9 @@ def raise_sheets(
         Which cells were raised.
     """
     raised = np.zeros(heights.shape, bool)
-    level = are_level(area_vectors(polygons))
-    ends = _edges(polygons[~level])
+    level = [are_level(area_vectors(each)) for each in polygons]
+    groups = list(zip(polygons, level, strict=True))
+    ends = np.concatenate([_edges(each[~its]) for each, its in groups])
     if not len(ends):
         return raised
     found = list(_above(ends, heights, origin, resolution))
@@ -52,7 +53,8 @@ def raise_sheets(
     cell, z, held, edge = (np.concatenate(each) for each in zip(*found, strict=True))
     # An edge that carries a top is the side of a body: its top may slope away within a cell.
     used = np.unique(edge)
-    carries = _are_among(_keys(ends[used]), polygons[level])
+    keys = _keys(ends[used])
+    carries = np.any([_are_among(keys, each[its]) for each, its in groups], axis=0)
     slack = np.where(carries, 2.0 * resolution, HELD)[np.searchsorted(used, edge)]
     high = z > held + slack
     np.maximum.at(heights.reshape(-1), cell[high], z[high].astype(heights.dtype))

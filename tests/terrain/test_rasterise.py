@@ -3,7 +3,7 @@ import pytest
 
 from jaxleas.terrain import GeneratorConfig, Scene, TileKind, generate_arena, rasterise
 from jaxleas.terrain.config import BridgeConfig
-from jaxleas.terrain.rasterise import BLOCK, CLOSING, rasterise_polygons
+from jaxleas.terrain.rasterise import BLOCK, CLOSING, padded_groups, rasterise_polygons
 from jaxleas.types import InputError
 
 RESOLUTION = 0.05
@@ -143,3 +143,20 @@ def test_a_map_too_large_is_refused():
     scene = Scene({"a": near, "b": near + np.array([1e5, 1e5, 0.0])})
     with pytest.raises(InputError, match="coarser resolution"):
         rasterise(scene)
+
+
+def test_polygons_of_all_sizes_make_one_map_in_bounded_memory(monkeypatch):
+    rng = np.random.default_rng(4)
+    polygons = [regular(3 + index % 40, rng.uniform(0.0, 4.0, 3)) for index in range(120)]
+    whole = rasterise_polygons(polygons, 0.05, 0.2)
+    monkeypatch.setitem(padded_groups.__globals__, "BATCH_CORNERS", 1000)
+    groups = padded_groups(polygons)
+    assert len(groups) > 3
+    assert sum(each.shape[0] * each.shape[1] for each in groups) < 2 * sum(map(len, polygons))
+    parts = rasterise_polygons(polygons, 0.05, 0.2)
+    np.testing.assert_allclose(parts.heights, whole.heights, atol=1e-6)
+
+
+def regular(count: int, middle: np.ndarray) -> np.ndarray:
+    angle = 2.0 * np.pi * np.arange(count) / count
+    return middle + 0.4 * np.stack([np.cos(angle), np.sin(angle), 0.3 * np.cos(angle)], axis=1)

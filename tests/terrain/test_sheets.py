@@ -87,7 +87,7 @@ def test_overhangs_are_measured(tmp_path, caplog):
     parts += [box((1, 1, 0.5), (0, 0, 0.75)), box((1, 0.5, 0.1), (1.5, 0, 1.5))]
     trimesh.util.concatenate(parts).export(tmp_path / "roof.stl")
     heights = import_mesh(tmp_path / "roof.stl")
-    found = losses(read_triangles(tmp_path / "roof.stl"), heights)
+    found = losses([read_triangles(tmp_path / "roof.stl")], heights)
     assert found.covered == pytest.approx(0.5, rel=0.1)
     assert found.headroom == pytest.approx(1.45)
     assert found.thin == 0
@@ -101,7 +101,7 @@ def test_what_is_too_thin_is_counted(tmp_path, caplog):
         )) for x, height in ((-1.01, 0.4), (0.51, 0.9))
     ]  # fmt: skip
     trimesh.util.concatenate([box((4, 4, 0.2), (0, 0, -0.1)), *spikes]).export(tmp_path / "a.stl")
-    found = losses(read_triangles(tmp_path / "a.stl"), import_mesh(tmp_path / "a.stl", 0.1))
+    found = losses([read_triangles(tmp_path / "a.stl")], import_mesh(tmp_path / "a.stl", 0.1))
     assert found.thin == 2
     assert found.thin_height == pytest.approx(0.9, abs=0.01)
     assert "lacks 2 things thinner than a cell, up to 0.90 m high" in caplog.text
