@@ -11,6 +11,7 @@ from .crossing import cross as cross
 from .first_pair import first_pair as first_pair
 from .ground_start import measured_at_start as measured_at_start
 from .ground_start import standing_on as standing_on
+from .in_words import NotReachedError as NotReachedError
 from .in_words import in_words as in_words
 from .seen_map import MapErrors as MapErrors
 from .tally import Tally as Tally

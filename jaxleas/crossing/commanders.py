@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from jaxleas.crossing.goals import Goals
 from jaxleas.crossing.run_up import RunUp
+from jaxleas.crossing.stop import Stop
 from jaxleas.footsteps import FootstepPlan, Goal, WalkingState, turned, wrapped
 from jaxleas.types import ControllerIdentity, InputError
 
@@ -60,7 +61,8 @@ class PlanningCommander:
     """Plans footsteps on a map at each contact, and commands the first velocity of the plan.
 
     A robot that gets no nearer to its goal takes another run-up: for a few footsteps its goal is a
-    place behind it, at a drawn distance, so that its feet meet the edges ahead otherwise.
+    place behind it, at a drawn distance, so that its feet meet the edges ahead otherwise. Told to
+    stop, it is left alone until it rests.
 
     Args:
         planner: planner on the map that the robot has.
@@ -72,19 +74,30 @@ class PlanningCommander:
         self._planner = planner
         self._goals = Goals(goals)
         self._run_up = RunUp(np.random.default_rng(seed))
+        self._stop = Stop()
+        self._plan: FootstepPlan | None = None
 
     def decide(self, state: WalkingState) -> Decision:
         """Return the first command of a plan from a measured state."""
         begin = perf_counter()
-        goal = self._run_up.goal_for(state, self._goals.for_state(state))
-        plan = self._planner.plan(state, goal)
-        if not plan.footsteps and plan.status == "reached" and self._run_up.is_taken:
-            self._run_up.end()
-            plan = self._planner.plan(state, self._goals.for_state(state))
+        goal = self._stop.aim_of(state, self._goals.for_state(state))
+        if self._stop.is_taken and self._plan is not None:
+            plan = self._plan
+        else:
+            plan = self._plan = self._planned(state, goal)
         intent: Intent = "go"
         if not plan.footsteps:
             intent = "arrived" if plan.status == "reached" else "no path"
+        if intent == "arrived":
+            self._stop.begin()
         return Decision(intent, plan.command, plan, perf_counter() - begin, self._goals.number)
+
+    def _planned(self, state: WalkingState, goal: Goal) -> FootstepPlan:
+        plan = self._planner.plan(state, self._run_up.goal_for(state, goal))
+        if not plan.footsteps and plan.status == "reached" and self._run_up.is_taken:
+            self._run_up.end()
+            plan = self._planner.plan(state, goal)
+        return plan
 
 
 class BlindCommander:

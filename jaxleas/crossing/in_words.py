@@ -4,12 +4,26 @@ import numpy as np
 
 from jaxleas.crossing.crossing import Crossing
 from jaxleas.footsteps import Goal
+from jaxleas.types import JaxleasError
 
 _CAUSES = {
     "tilted": "its trunk tilted",
     "low": "its trunk sank between its feet",
     "diverged": "the simulation failed: its numbers are no longer finite",
 }
+
+
+class NotReachedError(JaxleasError):
+    """A walk that did not end at its goal: an answer, not a bad input.
+
+    Attributes:
+        exit_code: exit code of a command that ends so: what a shell reports for Ctrl-C if a person
+            stopped it.
+    """
+
+    def __init__(self, crossing: Crossing, goal: Goal) -> None:
+        self.exit_code = 130 if crossing.outcome == "interrupted" else 1
+        super().__init__(in_words(crossing, goal))
 
 
 def in_words(crossing: Crossing, goal: Goal) -> str:

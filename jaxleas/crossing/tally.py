@@ -6,11 +6,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.crossing.crossing import Crossing
+from jaxleas.footsteps import UNSAFE
 from jaxleas.terrain import SceneEdges
 from jaxleas.types import ControllerIdentity
-
-UNSAFE = 0.015
-"""Distance from an edge of the true scene below which a foot's middle is unsafe [m] (thesis)."""
 
 
 @dataclass(frozen=True, eq=False)

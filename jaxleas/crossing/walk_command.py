@@ -22,7 +22,7 @@ from jaxleas.crossing.commanders import BlindCommander, Commander, PlanningComma
 from jaxleas.crossing.courses import STOPS
 from jaxleas.crossing.crossing import cross
 from jaxleas.crossing.ground_start import measured_at_start, standing_on
-from jaxleas.crossing.in_words import in_words
+from jaxleas.crossing.in_words import NotReachedError, in_words
 from jaxleas.crossing.seen_map import MapErrors
 from jaxleas.crossing.tally import tally
 from jaxleas.crossing.walk_log import (
@@ -82,7 +82,8 @@ def walk(
     """Walk a quadruped to a goal in physics, with its footsteps planned at each contact.
 
     It ends at the goal (5 cm and 5 degrees), where no command is safe, with a fall, or when its
-    time is over; Ctrl-C ends it, too. What was logged is kept.
+    time is over; Ctrl-C ends it, too. What was logged is kept. Where the goal is not reached the
+    exit code is 1.
 
     Args:
         terrain: scene or mesh, or a map whose surfaces are found; docs/files.md lists all kinds.
@@ -123,7 +124,9 @@ def walk(
         seen = _Shown(progress, logger)
         (crossing,) = cross(physics, stands, [commander], settings.seconds, seen)
     counts = tally(crossing, SceneEdges.of(scene), walker.identity)
-    print(in_words(crossing, goals[-1]), counts.in_words(), sep="\n")
+    if crossing.outcome == "reached":
+        print(in_words(crossing, goals[-1]))
+    print(counts.in_words())
     if log is not None:
         chosen = {
             **{"terrain": str(terrain), "goal": goal, "start": start, "blind": blind},
@@ -136,6 +139,8 @@ def walk(
         )
         write_walk_log(log, logger.made(footstep_arrays(crossing.footsteps), description))
         print(f"log written to {log}")
+    if crossing.outcome != "reached":
+        raise NotReachedError(crossing, goals[-1])
 
 
 class _Shown:

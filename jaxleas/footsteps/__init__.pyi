@@ -1,6 +1,7 @@
 from .contact_watch import NONE as NONE
 from .contact_watch import UNCLEAR as UNCLEAR
 from .contact_watch import ContactWatch as ContactWatch
+from .cost_map import UNSAFE as UNSAFE
 from .cost_map import FootCostMap as FootCostMap
 from .cost_map import buffer_of as buffer_of
 from .cost_pictures import draw_cost_map as draw_cost_map

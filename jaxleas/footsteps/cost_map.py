@@ -1,7 +1,7 @@
 """The foot cost map: where feet may land, and what landing near an edge costs.
 
-Taouil's thesis, section 4.2.1; here in metres, and with a buffer that is measured: the radius of a
-foot and the error of its prediction.
+Taouil's thesis, section 4.2.1; here in metres, and with a buffer that is measured: what
+counts as unsafe, and the error of the prediction.
 """
 
 from dataclasses import dataclass
@@ -14,6 +14,8 @@ from jaxleas.footsteps.model import MotionModel
 from jaxleas.terrain import Edges, EdgeSearch, HeightMap, find_edges
 from jaxleas.types import InputError
 
+UNSAFE = 0.015
+"""Distance from an edge below which a landing of a foot's middle is unsafe [m] (thesis, 5.2)."""
 FAR_ENOUGH = 0.07
 """Distance from unsafe cells above which a landing costs nothing [m] (thesis, section 4.2.3)."""
 
@@ -79,10 +81,13 @@ class FootCostMap:
 
 
 def buffer_of(model: MotionModel, share: str = "0.95") -> float:
-    """Return the distance that feet must keep from edges [m]: their radius and prediction error.
+    """Return the distance that feet must keep from edges [m]: `UNSAFE` and the prediction's error.
+
+    The error is of either sign, so that of landings at this distance fewer are unsafe than the
+    share that is left, and of those farther away fewer still.
 
     Args:
         model: motion models of the controller.
         share: share of the landings that are nearer to their prediction; see `Errors`.
     """
-    return model.controller.foot_radius + model.errors.landing[share]
+    return UNSAFE + model.errors.landing[share]

@@ -117,8 +117,8 @@ def _landings(fitted: Fitted) -> str:
     )
     return (
         f"Mean distance of landings from their prediction, put together with the predicted pose:"
-        f" {means}. Kept: {model.feet}. Its quantiles: {quantiles}. The second is the share of"
-        " the buffer of a foot cost map that is not the foot's radius."
+        f" {means}. Kept: {model.feet}. Its quantiles: {quantiles}. The second is what"
+        " the buffer of a foot cost map adds to 1.5 cm, within which a landing is unsafe."
     )
 
 

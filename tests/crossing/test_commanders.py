@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxleas.crossing import BlindCommander, PlanningCommander
-from jaxleas.footsteps import FootstepPlan, Goal, WalkingState
+from jaxleas.footsteps import FootstepPlan, Goal, PlannedFootstep, WalkingState
 from jaxleas.types import InputError
 from tests.footsteps.made import IDENTITY
 
@@ -68,3 +68,41 @@ def test_a_blind_robot_goes_straight_at_its_goal():
     assert not arrived.command.any()
     with pytest.raises(InputError, match=r"a blind walk at 1\.5 of the largest speed"):
         BlindCommander(IDENTITY, [Goal(1.0, 0.0)], 1.5)
+
+
+class Straight:
+    """A planner that has arrived once the robot is near enough, and else goes ahead."""
+
+    def __init__(self):
+        self.goals = []
+
+    def plan(self, state, goal):
+        self.goals.append(goal)
+        if goal.is_met_by(state):
+            return FootstepPlan("reached", (), 0.0, 0.0, 1)
+        ahead = PlannedFootstep(0, np.array([0.3, 0.0, 0.0]), state.com[:2], 0.0, state.feet)
+        return FootstepPlan("horizon", (ahead,), 1.0, 0.0, 1)
+
+
+def test_a_robot_told_to_stop_is_left_alone_until_it_rests():
+    planner, goal = Straight(), Goal(1.0, 0.0, speed=0.25)
+    commander = PlanningCommander(planner, [goal])
+    assert commander.decide(state(x=0.97, speed=0.2)).intent == "arrived"
+    for x, speed in ((1.02, 0.12), (1.06, 0.1)):  # beside its goal, but not yet at rest
+        assert commander.decide(state(x=x, speed=speed)).intent == "arrived"
+    assert len(planner.goals) == 1
+
+
+def test_a_robot_that_comes_to_rest_beside_its_goal_aims_that_far_before_it():
+    planner, goal = Straight(), Goal(1.0, 0.0, speed=0.25)
+    commander = PlanningCommander(planner, [goal])
+    commander.decide(state(x=0.97, speed=0.2))
+    assert commander.decide(state(x=1.07)).intent == "go"
+    assert planner.goals[-1].x == pytest.approx(0.93)
+    assert commander.decide(state(x=0.93, speed=0.1)).intent == "arrived"
+    assert commander.decide(state(x=1.01)).intent == "arrived"  # at rest, at the goal itself
+    asked = Straight()
+    far = PlanningCommander(asked, [goal])
+    far.decide(state(x=0.97, speed=0.2))
+    far.decide(state(x=1.5))  # pushed aside: that is not how far a robot goes on
+    assert asked.goals[-1].x == pytest.approx(0.9)

@@ -5,7 +5,7 @@ from jaxleas.footsteps import FootCostMap, buffer_of, draw_cost_map
 from jaxleas.footsteps.fitting import FitSettings, fit_motion_models
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError
-from tests.footsteps.made import IDENTITY, walked
+from tests.footsteps.made import walked
 
 CELL = 0.02
 
@@ -18,9 +18,9 @@ def ledge():
     return HeightMap(heights, CELL, (0.0, -0.4))
 
 
-def test_the_buffer_is_the_foot_and_its_error():
+def test_the_buffer_is_what_is_unsafe_and_the_error():
     model = fit_motion_models(walked(20, 60, noise=0.003), FitSettings(network=False)).model
-    assert buffer_of(model) == IDENTITY.foot_radius + model.errors.landing["0.95"]
+    assert buffer_of(model) == 0.015 + model.errors.landing["0.95"]
     assert 0.005 < model.errors.landing["0.95"] < 0.02
 
 
