@@ -12,7 +12,7 @@ from jaxleas.types import InputError
 tifffile = pytest.importorskip("tifffile", reason="needs the extra maps")
 rosbags = pytest.importorskip("rosbags", reason="needs the extra maps")
 from rosbags.rosbag1 import Writer as Writer1  # noqa: E402
-from rosbags.rosbag2 import StoragePlugin  # noqa: E402
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin  # noqa: E402
 from rosbags.rosbag2 import Writer as Writer2  # noqa: E402
 from rosbags.rosbag2.storage_mcap import zstd  # noqa: E402
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: E402
@@ -219,8 +219,10 @@ def bag(folder: Path, kind: str, messages):
         writer, serialise = Writer1(path), store.serialize_ros1
     else:
         path = folder / "map"
-        plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
+        plugin = StoragePlugin.SQLITE3 if kind == "db3" else StoragePlugin.MCAP
         writer = Writer2(path, version=9, storage_plugin=plugin)
+        if kind == "mcap of packed chunks":
+            writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         serialise = store.serialize_cdr
     name = "grid_map_msgs/msg/GridMap"
     with writer:
@@ -240,7 +242,7 @@ def ramp():
     return heights
 
 
-@pytest.mark.parametrize("kind", ["bag", "db3", "mcap"])
+@pytest.mark.parametrize("kind", ["bag", "db3", "mcap", "mcap of packed chunks"])
 @pytest.mark.parametrize("start", [(0, 0), (2, 3), (5, 1)])
 def test_a_grid_map_is_read_through_its_circular_buffer(tmp_path, kind, start):
     layers = {"variance": np.zeros((6, 4)), "elevation": ramp()}
@@ -252,6 +254,8 @@ def test_a_grid_map_is_read_through_its_circular_buffer(tmp_path, kind, start):
         assert found.resolution == 0.1
         assert found.extent == pytest.approx((2.7, 3.3, -2.2, -1.8))
         np.testing.assert_array_equal(found.heights, ramp()[::-1, ::-1].T)
+    if kind == "mcap of packed chunks":
+        assert b"zstd" in inside[0].read_bytes()
 
 
 def ros1_mcap(path, packing=""):
