@@ -5,14 +5,13 @@ so what large windows leave is left to smaller ones. Cores stay half a window aw
 `assigning.py` brings each cell up to the edge to its plane.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 from jaxtyping import Bool
 
 from jaxleas.terrain.planes.connected import connected
 from jaxleas.terrain.planes.plane import Box, Plane, around, fitted
 from jaxleas.terrain.planes.region import Growth, Region
+from jaxleas.terrain.planes.seeds import flattest_first, large
 from jaxleas.terrain.planes.windows import Windows
 
 CERTAIN = 3.0
@@ -23,8 +22,6 @@ RISE = 0.1
 """Height by which they may differ, besides that of their noise, in its standard deviations."""
 FIRST_REACH = 2
 """Half side of the first part of the map in which a plane grows, in windows."""
-MANY = 1000
-"""Number of seeds that are looked at together: most are taken by then."""
 
 
 def grow_regions(ground: Growth, scales: list[Windows]) -> list[Region]:
@@ -59,8 +56,8 @@ def _fresh(
 ) -> list[Region]:
     """Return new regions, from the flattest windows on; they are taken out of `usable`."""
     found = []
-    seeds = _large(usable, ground.least_core)
-    for seed in _flattest_first(seeds, windows):
+    seeds = large(usable, ground.least_core)
+    for seed in flattest_first(seeds, windows):
         first, region = _grown(ground, windows, usable, seed)
         if region is None:
             seeds[around(_box_of(seed), windows.size // 2, seeds.shape)] = False
@@ -70,18 +67,6 @@ def _fresh(
         for each in (usable, seeds):
             each[region.box] &= ~region.cells
     return found
-
-
-def _flattest_first(seeds: Bool[np.ndarray, "R C"], windows: Windows) -> Iterator[tuple[int, int]]:
-    """Yield the places of seeds, the flattest windows first, unless taken out by then."""
-    cells = np.flatnonzero(seeds)
-    cells = cells[np.argsort(windows.deviation.reshape(-1)[cells], kind="stable")]
-    left = seeds.reshape(-1)  # the same memory
-    for first in range(0, len(cells), MANY):
-        some = cells[first : first + MANY]
-        for cell in some[left[some]].tolist():
-            if left[cell]:
-                yield divmod(cell, seeds.shape[1])
 
 
 def _grown(
@@ -153,14 +138,6 @@ def _with(cells: Bool[np.ndarray, "r c"], seed: tuple[int, int]) -> Bool[np.ndar
         return np.zeros_like(cells)
     components, _ = connected(cells)
     return components == components[seed]
-
-
-def _large(cells: Bool[np.ndarray, "R C"], least: int) -> Bool[np.ndarray, "R C"]:
-    """Return the cells that hang together with enough others."""
-    components, _ = connected(cells)
-    enough = np.bincount(components.reshape(-1)) >= least
-    enough[0] = False
-    return enough[components]
 
 
 def _wider(box: Box, cells: Bool[np.ndarray, "r c"], reach: int, shape: tuple[int, int]) -> Box:
