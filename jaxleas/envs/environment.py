@@ -9,6 +9,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, ClassVar, Self
 
+import jax
+
 from jaxleas.envs.signature import Signature
 from jaxleas.envs.task_config import TaskConfig, WorldsConfig
 from jaxleas.envs.task_values import Examination, Starts, StepResult
@@ -149,7 +151,8 @@ class Task(ABC):
 
     def command(self, action: Any) -> Any:
         """Return an action in physical units."""
-        return self.signature.command(action)
+        command = self.signature.command(action)
+        return jax.device_get(command) if self.on_host else command
 
     def examination(self, held_out: Any) -> Examination:
         """Return how success is measured during training.

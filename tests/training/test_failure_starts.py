@@ -11,7 +11,7 @@ from jaxleas.envs.host_starts import HostPool
 from jaxleas.envs.part import Part
 from jaxleas.envs.signature import Signature
 from jaxleas.envs.starts import draw_failing_picks, pool_of
-from jaxleas.envs.task_config import TaskConfig
+from jaxleas.envs.task_config import TaskConfig, WorldsConfig
 from jaxleas.envs.task_values import Starts, StepResult
 from jaxleas.runs.checkpoints import Checkpoints
 from jaxleas.training.config import RunConfig
@@ -56,6 +56,13 @@ class Bridge(Task):
 
 class HostBridge(Bridge):
     on_host = True
+
+
+def test_commands_on_the_host_are_numpys():
+    """A state in float64 stays so: an array of JAX would make it float32."""
+    command = HostBridge(BridgeConfig(), WorldsConfig()).command(np.full((3, 1), 0.5, np.float32))
+    assert isinstance(command, np.ndarray)
+    assert (np.zeros((3, 1)) + command).dtype == np.float64
 
 
 def trainer_of(task: type[Task], **ppo) -> Trainer:
