@@ -137,6 +137,7 @@ def test_no_wave_ahead_means_nothing_is_older_than_its_batch(training, ground):
     assert max(each["planner/staleness_most"] for each in metrics) <= 1
 
 
+@pytest.mark.slow
 def test_when_workers_die_the_training_is_the_same(training):
     def with_workers(on_call):
         workers = ProcessWorkers(2)

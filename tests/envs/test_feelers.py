@@ -1,6 +1,5 @@
 """Feelers: their margins beside a twin in NumPy, their mirror images, and what they tell apart."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -169,7 +168,6 @@ def test_a_post_that_passes_between_the_usual_points_is_met():
     assert ENV.margin(atlas, index, motion) < 0.0
 
 
-@jax.jit
 def _look(atlas, motion, goal=(1.0, 1.0)):
     state = ENV.start(motion, route_to(jnp.array(goal), len(motion.yaw)))
     return ENV.look(atlas, state)

@@ -18,7 +18,6 @@ from jaxleas.types import InputError
 from .worlds import flat, height_map, world_of
 
 
-@partial(jax.jit, static_argnums=(0, 3))
 def draw_starts(env, world, key, count):
     return pool_of(draw_candidates(env, world, key, count))
 

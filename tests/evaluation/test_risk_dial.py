@@ -31,6 +31,7 @@ def doubtful():
     return random.replace(weights=weights)
 
 
+@pytest.mark.slow
 def test_refused_while_walking_is_what_lies_below_the_threshold_in_the_end(flat_suite, doubtful):
     policy = homing_policy()
     cell, steps = flat_suite.cells[0], 300

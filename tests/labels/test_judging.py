@@ -103,6 +103,7 @@ def test_only_the_task_of_the_dead_is_tried_again(workers, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_task_that_kills_everybody_is_given_up(workers, tmp_path):
     with pytest.raises(WorkerError, match=r"3 workers died over the same task.*code 3"):
         list(workers.run(note_and_die, [(tmp_path, number) for number in range(3)]))
@@ -116,6 +117,7 @@ def test_errors_come_back_as_they_are(workers):
         list(workers.run(complain, [0]))
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_the_busy_and_the_next_call_works(workers, tmp_path):
     def interrupt():
         while len(list(tmp_path.iterdir())) < 2:

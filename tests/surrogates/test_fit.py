@@ -33,6 +33,7 @@ def memory():
     return fit(walks, flat_atlas(MAPS), env(), identity(), settings), walks
 
 
+@pytest.mark.slow
 def test_a_rule_that_needs_memory_is_learned(memory):
     report = memory[0].report
     assert report["stretch"]["balanced_accuracy"] > 0.97

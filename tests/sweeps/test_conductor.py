@@ -125,6 +125,7 @@ def test_the_pruner_ends_bad_trials_at_an_examination(tmp_path, monkeypatch):
             assert not (tmp_path / f"out/trials/{each.number:04d}/seed_1").exists()
 
 
+@pytest.mark.slow
 def test_two_machines_share_a_study_and_do_each_trial_once(tmp_path):
     path = write_sweep(tmp_path, space=SPACE, trials=4)
     storage = f"sqlite:///{tmp_path}/study.db"

@@ -85,6 +85,7 @@ def test_nothing_follows_a_termination():
     assert mean_value(state, networks) == pytest.approx(-0.7, abs=0.03)
 
 
+@pytest.mark.slow
 def test_it_learns_to_walk_to_goals_on_flat_ground():
     small = {"environments": 256, "unroll": 20, "minibatches": 4, "candidates": 256}
     config = SteeringRun.model_validate(
