@@ -61,8 +61,8 @@ class PlanningCommander:
     """Plans footsteps on a map at each contact, and commands the first velocity of the plan.
 
     A robot that gets no nearer to its goal takes another run-up: for a few footsteps its goal is a
-    place behind it, at a drawn distance, so that its feet meet the edges ahead otherwise. Told to
-    stop, it is left alone until it rests.
+    place behind it, at a drawn distance, so that its feet meet the edges ahead otherwise. After
+    the command to stand, it gets no new plan until it rests.
 
     Args:
         planner: planner on the map that the robot has.

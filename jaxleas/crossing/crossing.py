@@ -10,6 +10,7 @@ from jaxtyping import Float
 from jaxleas.controllers import FALLS, TICK, UPRIGHT, Controller, Ticked, Walk, Walking, falls
 from jaxleas.crossing.commanders import Commander, Decision
 from jaxleas.crossing.first_pair import first_pair
+from jaxleas.crossing.stop import RESTS
 from jaxleas.crossing.walked_footsteps import WalkedFootstep, first_of
 from jaxleas.footsteps import NONE, TOUCHES, ContactWatch, FootstepPlan, WalkingState
 from jaxleas.physics import Body, BodyState, Sensed
@@ -18,10 +19,8 @@ from jaxleas.types import InputError
 Outcome = Literal["reached", "no path", "fell", "time", "interrupted"]
 """It stands at the goal; no command was safe, and it stands; it fell; its time was over; a person
 stopped it."""
-RESTS = 0.05
-"""Speed of the centre of mass below which a robot counts as standing [m/s]."""
 SETTLES = 0.4
-"""Time that a robot gets to come to rest once it is told to stand [s]."""
+"""Time from the command to stand until a robot is asked whether it rests [s]."""
 LATE = 1.0
 """Time after which a walking robot is commanded anew although no footstep has ended [s]."""
 

@@ -1,4 +1,4 @@
-"""Stopping at a goal: told to stand, a robot goes on by some centimetres, which it allows for."""
+"""Stopping at a goal: after the command to stand a robot drifts on, which its aim allows for."""
 
 from dataclasses import replace
 
@@ -7,15 +7,15 @@ import numpy as np
 from jaxleas.footsteps import Goal, WalkingState
 
 RESTS = 0.05
-"""Speed of the centre of mass below which a robot that was told to stand does so [m/s]."""
+"""Speed of the centre of mass below which a robot counts as standing [m/s]."""
 MOST = 0.10
 """Largest distance that is allowed for, along each axis [m]."""
 
 
 class Stop:
-    """Lets a robot come to rest once it is told to, and aims anew where it rests beside its goal.
+    """Lets a robot come to rest after the command to stand; aims anew where it missed its goal.
 
-    A controller that is told to stop makes some more footsteps, of which motion models know
+    After the command to stand a controller makes some more footsteps, of which motion models know
     nothing. Planning at each of them would send the robot back and forth around its goal.
 
     Attributes:
