@@ -6,17 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jaxleas.configuration import Allow
-from jaxleas.controllers import DEFAULT_CONTROLLER, TICK, ControllerName, find_controller
+from jaxleas.controllers import DEFAULT_CONTROLLER, ControllerName, find_controller
 from jaxleas.files import FolderLock
-from jaxleas.footsteps.collecting import (
-    DEFINITIONS,
-    CollectionSettings,
-    RunFell,
-    collect_shard,
-    is_done,
-    plan_shards,
-)
+from jaxleas.footsteps.collecting import DEFINITIONS, collect_shard, is_done, plan_shards
 from jaxleas.footsteps.collection_runs import COLLECTED, plan_runs
+from jaxleas.footsteps.collection_walk import CollectionSettings, RunFell
 from jaxleas.footsteps.records import Definition, FootstepRecords
 from jaxleas.physics import DEFAULT_BODY, load_body
 from jaxleas.runs import Progress, collect_provenance
@@ -54,7 +48,7 @@ def collect(
     provenance, _ = collect_provenance(sys.argv)
     with _held(out):
         waiting = [shard for shard in shards if not is_done(shard, walker, settings)]
-        ticks = sum(len(shard.runs) for shard in waiting) * round(settings.seconds / TICK)
+        ticks = sum(len(shard.runs) for shard in waiting) * settings.ticks
         with Progress(ticks) as progress:
             told = _Told(progress)
             for shard in waiting:

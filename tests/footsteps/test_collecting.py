@@ -6,8 +6,9 @@ import pytest
 from jaxleas import cli
 from jaxleas.controllers import find_controller
 from jaxleas.footsteps import movement_of, read_footsteps
-from jaxleas.footsteps.collecting import CollectionSettings, collect_shard, plan_shards
+from jaxleas.footsteps.collecting import collect_shard, plan_shards
 from jaxleas.footsteps.collection_runs import ChangingCommand, CollectionRun, plan_runs
+from jaxleas.footsteps.collection_walk import CollectionSettings
 from jaxleas.physics import load_body
 from jaxleas.types import MOVEMENTS, InputError
 
