@@ -35,7 +35,7 @@ from jaxleas.files import write_json
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.robots import load_talos, write_robot
 from jaxleas.terrain import Scene, write_height_map
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.training.policy import read_policy, write_policy
 from tests.contacts.sampling.worlds import straight
 from tests.guide.walkers import flat_map, homing_policy

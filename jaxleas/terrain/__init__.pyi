@@ -18,7 +18,6 @@ from .generator import generate_arena as generate_arena
 from .height_map import HeightMap as HeightMap
 from .height_map import read_height_map as read_height_map
 from .height_map import write_height_map as write_height_map
-from .images import import_png as import_png
 from .importers import import_mesh as import_mesh
 from .importers import import_terrain as import_terrain
 from .limit import Bar as Bar
@@ -30,7 +29,7 @@ from .loading import has_polygons as has_polygons
 from .loading import is_map as is_map
 from .loading import load_scene as load_scene
 from .loading import require_search_of_map as require_search_of_map
-from .mesh_scene import mesh_to_scene as mesh_to_scene
+from .meshes.to_scene import mesh_to_scene as mesh_to_scene
 from .own_files import Entry as Entry
 from .own_files import pinned as pinned
 from .own_files import read_own_terrain as read_own_terrain
@@ -49,6 +48,7 @@ from .polygons import require_few as require_few
 from .polygons import require_planar_and_convex as require_planar_and_convex
 from .rasterise import DEFAULT_RESOLUTION as DEFAULT_RESOLUTION
 from .rasterise import rasterise as rasterise
+from .rasters.images import import_png as import_png
 from .reading import READING as READING
 from .reading import Reading as Reading
 from .scale import PUBLISHED as PUBLISHED
@@ -71,10 +71,10 @@ from .scenarios.scenario import Scenario as Scenario
 from .scenarios.transitions import TransitionKind as TransitionKind
 from .scenarios.transitions import transition as transition
 from .scene import Scene as Scene
-from .scene import read_scene as read_scene
-from .scene import write_scene as write_scene
 from .scene_edges import SceneEdges as SceneEdges
 from .scene_edges import ground_height as ground_height
+from .scene_file import read_scene as read_scene
+from .scene_file import write_scene as write_scene
 from .seeds import EVALUATION_SEED as EVALUATION_SEED
 from .seeds import HELD_OUT_SEED as HELD_OUT_SEED
 from .seeds import MAX_TRAINING_SEED as MAX_TRAINING_SEED

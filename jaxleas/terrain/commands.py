@@ -19,7 +19,7 @@ from jaxleas.terrain.planes.settings import PLANE_SEARCH, PlaneSearch
 from jaxleas.terrain.reading import READING, SHAPING, Reading, require_applicable
 from jaxleas.terrain.scale import scale_for, scaled
 from jaxleas.terrain.scenarios import make_scenario, scene_with_areas
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.terrain.shaping import holes
 from jaxleas.terrain.writers.catalogue import FormatName, named_by_format, written_as
 from jaxleas.types import InputError

@@ -7,26 +7,26 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.height_map import (
     HeightMap,
     require_resolution,
     require_usable,
     say_if_tall,
 )
-from jaxleas.terrain.images import import_png
 from jaxleas.terrain.losses import losses, say_losses
-from jaxleas.terrain.map_formats import MAPS
-from jaxleas.terrain.mesh_edges import welded
-from jaxleas.terrain.mesh_formats import MESHES
-from jaxleas.terrain.mesh_scene import read_placed_scene
-from jaxleas.terrain.meshes import read_triangles
+from jaxleas.terrain.meshes.bodies import orient
+from jaxleas.terrain.meshes.formats import MESHES
+from jaxleas.terrain.meshes.mesh_edges import welded
+from jaxleas.terrain.meshes.to_scene import read_placed_scene
+from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.rasterise import (
     DEFAULT_RESOLUTION,
     padded_groups,
     rasterise,
     rasterise_polygons,
 )
+from jaxleas.terrain.rasters.formats import MAPS
+from jaxleas.terrain.rasters.images import import_png
 from jaxleas.terrain.reading import MAPPING, READING, Reading, Up, require_applicable
 from jaxleas.terrain.shaping import moved, shaped
 from jaxleas.terrain.unread import refuse_unread

@@ -4,13 +4,13 @@ import logging
 from pathlib import Path
 
 from jaxleas.terrain.importers import import_terrain, is_bag
-from jaxleas.terrain.map_formats import MAPS
-from jaxleas.terrain.mesh_scene import mesh_to_scene, read_placed_scene
-from jaxleas.terrain.meshes import SUFFIXES
+from jaxleas.terrain.meshes.to_scene import mesh_to_scene, read_placed_scene
+from jaxleas.terrain.meshes.triangles import SUFFIXES
 from jaxleas.terrain.planes.finding import find_surfaces
 from jaxleas.terrain.planes.found import FoundSurfaces
 from jaxleas.terrain.planes.report import require_surfaces, surfaces_in_words
 from jaxleas.terrain.planes.settings import PLANE_SEARCH, PlaneSearch
+from jaxleas.terrain.rasters.formats import MAPS
 from jaxleas.terrain.reading import MAPPING, READING, Reading, require_applicable
 from jaxleas.terrain.scene import Scene
 from jaxleas.terrain.unread import refuse_unread

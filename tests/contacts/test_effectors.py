@@ -26,7 +26,8 @@ from jaxleas.contacts.problem_file import parse_problem
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import MipSettings, Sl1mSettings, judge, read_verdicts
 from jaxleas.robots import write_robot
-from jaxleas.terrain.scene import Scene, write_scene
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.effectors import FLOOR, PLACES, WALL, leaner, tripod
 from tests.contacts.sampling.worlds import straight

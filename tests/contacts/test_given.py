@@ -7,7 +7,7 @@ import pytest
 from jaxleas import cli
 from jaxleas.contacts import read_plan
 from jaxleas.files import write_npz
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import stairs, straight
 from tests.contacts.test_commands import folder  # noqa: F401 (a fixture)

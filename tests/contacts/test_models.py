@@ -13,7 +13,8 @@ from jaxleas.contacts.programs.settings import MipSettings
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import Oracle, read_verdicts
 from jaxleas.robots import load_talos, write_robot
-from jaxleas.terrain.scene import Scene, write_scene
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.effectors import FLOOR, tripod
 from tests.contacts.sampling.worlds import straight

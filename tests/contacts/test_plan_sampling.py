@@ -18,7 +18,7 @@ from jaxleas.contacts.problem import FootPose
 from jaxleas.contacts.sampling.follower import GuideFollower
 from jaxleas.files import write_json, write_npz
 from jaxleas.robots import load_robot, load_talos
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, hole, stairs, straight
 

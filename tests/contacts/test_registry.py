@@ -15,7 +15,7 @@ from jaxleas.contacts.registry import PLANNERS, find_planner, measures_of, title
 from jaxleas.contacts.settings import PlannerSettings
 from jaxleas.distillation.config import DistillationConfig
 from jaxleas.sweeps.config import Exact
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import flat, straight
 

@@ -18,7 +18,7 @@ from jaxleas.labels import (
 )
 from jaxleas.labels.commands import label
 from jaxleas.robots import load_robot
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import hole, straight
 

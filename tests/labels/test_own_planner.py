@@ -19,7 +19,7 @@ from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import Judge, Outcome, OwnPlanner, PlannerAnswer, read_verdicts
 from jaxleas.robots import load_talos, robot_digest, write_robot
 from jaxleas.surrogates.label_files import read_labels
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import Cause, InputError
 from tests.contacts.sampling.worlds import hole, straight
 

@@ -13,7 +13,7 @@ from jaxleas.files import FolderLock
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import read_verdicts
 from jaxleas.labels.commands import label
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from tests.contacts.sampling.worlds import hole, straight
 from tests.training.runs import ROOT, environment

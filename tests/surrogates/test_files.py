@@ -25,7 +25,8 @@ from jaxleas.surrogates import (
 )
 from jaxleas.surrogates.features import MOTION_FEATURES
 from jaxleas.surrogates.network import initial_weights
-from jaxleas.terrain.scene import Scene, write_scene
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 
 from .walkers import KEEP_EVERY, identity, wander

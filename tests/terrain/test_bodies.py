@@ -5,9 +5,9 @@ import pytest
 import trimesh
 
 from jaxleas.terrain import load_scene, rasterise
-from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.importers import import_mesh
-from jaxleas.terrain.mesh_edges import welded
+from jaxleas.terrain.meshes.bodies import orient
+from jaxleas.terrain.meshes.mesh_edges import welded
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.types import InputError
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxleas.terrain import import_terrain, load_scene
-from jaxleas.terrain.faces import triangulate
+from jaxleas.terrain.meshes.faces import triangulate
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.types import InputError
 

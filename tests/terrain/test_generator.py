@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from jaxleas.terrain import GeneratorConfig, TileKind, generate_arena, rasterise
 from jaxleas.terrain.generator import _Builder
-from jaxleas.terrain.scene import require_valid
+from jaxleas.terrain.scene_file import require_valid
 
 SEEDS = range(15)
 

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from jaxleas.terrain import import_png, import_terrain
-from jaxleas.terrain.deep_png import decode_deep_colour
+from jaxleas.terrain.rasters.deep_png import decode_deep_colour
 from jaxleas.types import InputError
 
 CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}

@@ -15,7 +15,7 @@ from jaxleas.terrain import (
     write_height_map,
     write_scene,
 )
-from jaxleas.terrain.meshes import AXES
+from jaxleas.terrain.meshes.triangles import AXES
 from jaxleas.types import InputError
 
 MESHES = Path(__file__).resolve().parents[3] / "shared" / "data" / "meshes"

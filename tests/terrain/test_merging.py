@@ -4,10 +4,10 @@ import mapbox_earcut
 import numpy as np
 import pytest
 
-from jaxleas.terrain.coplanar import merged
-from jaxleas.terrain.deviations import convexity_deviations, planarity_deviations
-from jaxleas.terrain.half_edges import HalfEdges, facing_sides
-from jaxleas.terrain.merging import merge
+from jaxleas.terrain.meshes.coplanar import merged
+from jaxleas.terrain.meshes.deviations import convexity_deviations, planarity_deviations
+from jaxleas.terrain.meshes.half_edges import HalfEdges, facing_sides
+from jaxleas.terrain.meshes.merging import merge
 from jaxleas.terrain.polygons import (
     convexity_deviation,
     planarity_deviation,

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from jaxleas.terrain import import_terrain, load_scene
-from jaxleas.terrain.meshes import read_triangles
+from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.types import InputError
 

@@ -8,7 +8,7 @@ from jaxleas.terrain import mesh_to_scene, rasterise
 from jaxleas.terrain.importers import import_mesh
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.reading import Reading
-from jaxleas.terrain.scene import require_valid
+from jaxleas.terrain.scene_file import require_valid
 from jaxleas.types import InputError
 
 MESHES = Path(__file__).resolve().parents[3] / "shared" / "data" / "meshes"

@@ -15,7 +15,7 @@ from jaxleas.terrain import (
     wall,
 )
 from jaxleas.terrain.scenarios import Scenario, bridge_ahead, evaluation_terrain, hole_rim
-from jaxleas.terrain.scene import read_scene, require_valid, write_scene
+from jaxleas.terrain.scene_file import read_scene, require_valid, write_scene
 from jaxleas.types import InputError
 
 KINDS = ("rubble", "bridge", "stairs_up", "stairs_down")

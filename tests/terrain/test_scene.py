@@ -197,7 +197,7 @@ def test_a_scene_that_contradicts_itself_is_refused(tmp_path, content, problem):
 
 
 def test_a_scene_that_could_not_be_read_again_is_not_written(tmp_path, monkeypatch):
-    monkeypatch.setattr("jaxleas.terrain.scene.MAX_JSON_BYTES", 2**20)
+    monkeypatch.setattr("jaxleas.terrain.scene_file.MAX_JSON_BYTES", 2**20)
     many = {f"s{k}": np.array([[k, 0, 0], [k + 1, 0, 0], [k, 1, 0.0]]) for k in range(9000)}
     with pytest.raises(InputError, match=r"9000 polygons in \d+ MiB, more than the 1 MiB"):
         write_scene(tmp_path / "scene.json", Scene(many))

@@ -6,7 +6,7 @@ import trimesh
 
 from jaxleas.terrain import Scene, import_mesh, import_terrain, rasterise, write_scene
 from jaxleas.terrain.losses import losses
-from jaxleas.terrain.meshes import read_triangles
+from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.rasterise import rasterise_polygons
 
 FLOOR = np.array([[-2.0, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]])

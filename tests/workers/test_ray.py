@@ -10,7 +10,7 @@ import pytest
 from jaxleas.guide.files import write_guide_paths
 from jaxleas.labels import Here, Oracle, label_shards, make_shards, read_verdicts
 from jaxleas.labels.commands import label
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 from jaxleas.workers.ray_workers import RayWorkers
 from tests.contacts.sampling.worlds import hole, straight

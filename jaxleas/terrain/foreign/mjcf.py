@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxleas.terrain.foreign.answers import Answer, RefusedError
 from jaxleas.terrain.foreign.mjcf_text import standing_part
-from jaxleas.terrain.solids import box_triangles, cylinder_triangles, placed, round_triangles
+from jaxleas.terrain.meshes.solids import box_triangles, cylinder_triangles, placed, round_triangles
 
 MAX_TRIANGLES = 5_000_000
 WIDE = 5.0

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.half_edges import HalfEdges, facing_sides
-from jaxleas.terrain.merging import merge
+from jaxleas.terrain.meshes.half_edges import HalfEdges, facing_sides
+from jaxleas.terrain.meshes.merging import merge
 
 WORTH = 0.85
 """Part of a polygon that a single convex one must cover to stand for it."""

@@ -11,7 +11,7 @@ from jaxleas.terrain.height_map import HeightMap, write_height_map
 from jaxleas.terrain.loading import load_scene
 from jaxleas.terrain.polygons import polygon_area_vector
 from jaxleas.terrain.reading import Reading
-from jaxleas.terrain.scene import write_scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.terrain.writers.grid_map import write_bag, write_folder, write_mcap
 from jaxleas.terrain.writers.mjcf import write_map_mjcf, write_polygons_mjcf
 from jaxleas.terrain.writers.rasters import write_asc, write_png, write_tiff

@@ -7,13 +7,13 @@ from jaxtyping import Float
 
 from jaxleas.files import write_bytes
 from jaxleas.terrain.areas import area_vectors
-from jaxleas.terrain.bodies import orient
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.loading import load_scene
-from jaxleas.terrain.mesh_edges import is_closed, welded
-from jaxleas.terrain.mesh_files import MAX_TRIANGLES
-from jaxleas.terrain.mesh_formats import MESHES
-from jaxleas.terrain.meshes import read_triangles
+from jaxleas.terrain.meshes.bodies import orient
+from jaxleas.terrain.meshes.files import MAX_TRIANGLES
+from jaxleas.terrain.meshes.formats import MESHES
+from jaxleas.terrain.meshes.mesh_edges import is_closed, welded
+from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.writers.map_body import map_body
 from jaxleas.terrain.writers.scene_bodies import prisms_of

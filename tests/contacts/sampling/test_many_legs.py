@@ -12,7 +12,8 @@ from jaxleas.contacts.problem import FootPose
 from jaxleas.contacts.sampling import SamplingSettings, plan_contacts
 from jaxleas.files import write_npz
 from jaxleas.robots import Robot, load_talos, write_robot
-from jaxleas.terrain.scene import Scene, write_scene
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene_file import write_scene
 from jaxleas.types import InputError
 
 from .toys import HEIGHT, quadruped, stepping_stones, tripod

@@ -31,7 +31,7 @@ def floor() -> Scene:
 
 def terrain_kinds(folder: Path) -> list[Kind]:
     from jaxleas.terrain import import_png, import_terrain
-    from jaxleas.terrain.mesh_scene import mesh_to_scene
+    from jaxleas.terrain.meshes.to_scene import mesh_to_scene
 
     scene = floor()
     write_scene(folder / "scene.json", scene)

@@ -10,7 +10,7 @@ from jaxleas.terrain.loading import scene_of_surfaces
 from jaxleas.terrain.planes.report import surfaces_in_words
 from jaxleas.terrain.planes.rises import LEAST, rises
 from jaxleas.terrain.polygons import polygon_area_vector
-from jaxleas.terrain.scene import require_valid
+from jaxleas.terrain.scene_file import require_valid
 from jaxleas.types import GuidePath
 
 CELL = 0.05

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxleas.terrain.ply_header import Broken, Columns, Element, joined
+from jaxleas.terrain.meshes.ply_header import Broken, Columns, Element, joined
 
 
 def rows_of_text(body: bytes, broken: Broken) -> Callable[[Element], Columns]:

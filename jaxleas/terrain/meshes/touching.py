@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Int
 
-from jaxleas.terrain.mesh_edges import Edges, alike, closed_bodies
+from jaxleas.terrain.meshes.mesh_edges import Edges, alike, closed_bodies
 
 COINCIDENT = 1e-6
 """Faces at an edge lie on each other if 1 - cosine of the angle between them is below this."""

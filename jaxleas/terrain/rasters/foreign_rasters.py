@@ -15,7 +15,7 @@ from jaxleas.terrain.height_map import (
     require_usable,
     without_no_data,
 )
-from jaxleas.terrain.images import say_step
+from jaxleas.terrain.rasters.images import say_step
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.shaping import brought_near
 from jaxleas.types import InputError, is_ground

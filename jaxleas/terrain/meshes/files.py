@@ -13,11 +13,11 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.files import read_bytes
-from jaxleas.terrain.boxes import read_boxes
 from jaxleas.terrain.foreign.asking import ask
-from jaxleas.terrain.obj_files import read_obj
-from jaxleas.terrain.off_files import read_off
-from jaxleas.terrain.ply_files import read_ply
+from jaxleas.terrain.meshes.boxes import read_boxes
+from jaxleas.terrain.meshes.obj_files import read_obj
+from jaxleas.terrain.meshes.off_files import read_off
+from jaxleas.terrain.meshes.ply_files import read_ply
 from jaxleas.terrain.reading import Up
 from jaxleas.terrain.text_numbers import lines_of, vectors, without_mark
 from jaxleas.types import InputError

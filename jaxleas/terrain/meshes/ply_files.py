@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.terrain.faces import MAX_POLYGON, triangulate
-from jaxleas.terrain.ply_binary import rows_of_bytes
-from jaxleas.terrain.ply_header import Broken, Columns, read_header
-from jaxleas.terrain.ply_text import rows_of_text
+from jaxleas.terrain.meshes.faces import MAX_POLYGON, triangulate
+from jaxleas.terrain.meshes.ply_binary import rows_of_bytes
+from jaxleas.terrain.meshes.ply_header import Broken, Columns, read_header
+from jaxleas.terrain.meshes.ply_text import rows_of_text
 
 _FACES = ("vertex_indices", "vertex_index")
 

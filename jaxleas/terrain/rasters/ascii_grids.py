@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from jaxleas.files import read_bytes
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, without_no_data
-from jaxleas.terrain.rasters import with_cells
+from jaxleas.terrain.rasters.foreign_rasters import with_cells
 from jaxleas.terrain.reading import Reading
 from jaxleas.terrain.shaping import brought_near
 from jaxleas.terrain.text_numbers import shown, without_mark

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.faces import MAX_POLYGON, triangulate
+from jaxleas.terrain.meshes.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import lines_of, shown, vectors
 from jaxleas.types import InputError
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.terrain.faces import MAX_POLYGON, triangulate
+from jaxleas.terrain.meshes.faces import MAX_POLYGON, triangulate
 from jaxleas.terrain.text_numbers import shown, vectors
 from jaxleas.types import InputError
 

@@ -8,17 +8,18 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.agreement import compare, require_agreement
 from jaxleas.terrain.areas import area_vectors, area_vectors_of
-from jaxleas.terrain.bodies import orient
-from jaxleas.terrain.coplanar import merged
 from jaxleas.terrain.cropping import cropped_scene
-from jaxleas.terrain.mesh_edges import welded
-from jaxleas.terrain.meshes import read_triangles
+from jaxleas.terrain.meshes.agreement import compare, require_agreement
+from jaxleas.terrain.meshes.bodies import orient
+from jaxleas.terrain.meshes.coplanar import merged
+from jaxleas.terrain.meshes.mesh_edges import welded
+from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.polygons import MIN_AREA, STANDING_SLOPE, VERTICAL_SLOPE
 from jaxleas.terrain.reading import READING, Reading, Up
-from jaxleas.terrain.scene import Scene, read_scene
+from jaxleas.terrain.scene import Scene
+from jaxleas.terrain.scene_file import read_scene
 from jaxleas.terrain.shaping import require_rectangle
 from jaxleas.types import InputError
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from jaxleas.terrain.ascii_grids import read_asc
 from jaxleas.terrain.height_map import HeightMap, read_height_map
-from jaxleas.terrain.images import read_png
-from jaxleas.terrain.rasters import read_grid_map, read_tiff
+from jaxleas.terrain.rasters.ascii_grids import read_asc
+from jaxleas.terrain.rasters.foreign_rasters import read_grid_map, read_tiff
+from jaxleas.terrain.rasters.images import read_png
+from jaxleas.terrain.rasters.tables import read_csv, read_npy
 from jaxleas.terrain.reading import MAPPING, Reading
-from jaxleas.terrain.tables import read_csv, read_npy
 from jaxleas.types import InputError
 
 _GREY = ("z_min", "z_max", "zero_is_void")

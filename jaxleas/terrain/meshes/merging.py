@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.areas import lengths
-from jaxleas.terrain.half_edges import HalfEdges, once
+from jaxleas.terrain.meshes.half_edges import HalfEdges, once
 
 
 def merge(

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.configuration import read_mapping
-from jaxleas.terrain.solids import box_triangles, placed
+from jaxleas.terrain.meshes.solids import box_triangles, placed
 from jaxleas.types import InputError
 
 MAX_BOXES = 100_000

@@ -11,8 +11,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from jaxleas.files import read_bytes
-from jaxleas.terrain.deep_png import decode_deep_colour
 from jaxleas.terrain.height_map import MAX_CELLS, HeightMap, require_resolution, require_usable
+from jaxleas.terrain.rasters.deep_png import decode_deep_colour
 from jaxleas.terrain.reading import Reading
 from jaxleas.types import InputError
 

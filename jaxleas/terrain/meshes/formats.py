@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from jaxleas.terrain.mesh_files import Triangles, read_faces, read_glb, read_placed, read_stl
+from jaxleas.terrain.meshes.files import Triangles, read_faces, read_glb, read_placed, read_stl
 from jaxleas.terrain.reading import MAPPING
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.terrain.areas import area_vectors, bounds
-from jaxleas.terrain.mesh_files import Triangles
-from jaxleas.terrain.mesh_formats import MESHES
+from jaxleas.terrain.meshes.files import Triangles
+from jaxleas.terrain.meshes.formats import MESHES
 from jaxleas.terrain.places import require_near, shift_of
 from jaxleas.terrain.reading import READING, Reading, Rectangle, Up, require_applicable
 from jaxleas.terrain.shaping import require_rectangle

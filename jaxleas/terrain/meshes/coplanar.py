@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from jaxleas.terrain.areas import area_vectors, lengths
-from jaxleas.terrain.deviations import convexity_deviations, planarity_deviations
-from jaxleas.terrain.half_edges import HalfEdges, facing_sides
-from jaxleas.terrain.merging import merge
+from jaxleas.terrain.meshes.deviations import convexity_deviations, planarity_deviations
+from jaxleas.terrain.meshes.half_edges import HalfEdges, facing_sides
+from jaxleas.terrain.meshes.merging import merge
 from jaxleas.terrain.polygons import CONVEXITY_TOLERANCE, PLANARITY_TOLERANCE
 
 COPLANAR = (1e-6, 1e-8, 1e-10)

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.terrain.mesh_edges import alike, closed_bodies, edges_of
-from jaxleas.terrain.nesting import nested
-from jaxleas.terrain.touching import rejoined
+from jaxleas.terrain.meshes.mesh_edges import alike, closed_bodies, edges_of
+from jaxleas.terrain.meshes.nesting import nested
+from jaxleas.terrain.meshes.touching import rejoined
 
 
 @dataclass(frozen=True)

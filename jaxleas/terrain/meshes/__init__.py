@@ -1,0 +1,1 @@
+"""Meshes: files of triangles, the bodies that these make, and scenes and maps made of them."""

@@ -1,0 +1,1 @@
+"""Files of heights in rows and columns: images, tables, grids and maps of bags."""
