@@ -165,10 +165,8 @@ def _call(name: str, arguments: Sequence[str]) -> None:
     given, unknown = parser.parse_known_args(arguments)
     if unknown:
         options = [text for action in parser._actions for text in action.option_strings]
-        raise UsageError(
-            f"jaxleas {name} has no {unknown[0]}{_nearest(unknown[0], options)}; "
-            f"see jaxleas {name} --help"
-        )
+        left = [each for each in options if each not in arguments]
+        raise UsageError(f"jaxleas {name} {_no(unknown[0], left)}; see jaxleas {name} --help")
     function(**arguments_of(function, given))
 
 
@@ -201,9 +199,18 @@ def _unknown(words: list[str]) -> str:
     return f"there is no command '{typed}'; {meant}"
 
 
-def _nearest(option: str, options: list[str]) -> str:
-    close = difflib.get_close_matches(option.partition("=")[0], options, n=1)
-    return f", perhaps you meant {close[0]}" if close else ""
+def _no(word: str, options: list[str]) -> str:
+    """Return what is wrong with a word that no option takes, with what was perhaps meant.
+
+    Args:
+        word: word of the command line.
+        options: options of the command that were not given.
+    """
+    if not word.startswith("-"):
+        meant = f": perhaps you meant --out {word}" if "--out" in options else ""
+        return f"takes no further argument '{word}'{meant}"
+    close = difflib.get_close_matches(word.partition("=")[0], options, n=1)
+    return f"has no {word}" + (f", perhaps you meant {close[0]}" if close else "")
 
 
 if __name__ == "__main__":

@@ -107,7 +107,7 @@ def test_options_follow_the_signature() -> None:
         ("qqqq", ["no command 'qqqq'", "there are terrain show, "]),
         ("gait amble p --out x --strats 3", ["has no --strats, perhaps you meant --starts"]),
         ("gait amble p --out x --start 3", ["perhaps you meant --starts"]),
-        ("gait amble p --out x more", ["jaxleas gait amble has no more"]),
+        ("gait amble p --out x more", ["takes no further argument 'more'; see"]),
         ("gait amble p", ["required: --out"]),
         ("gait amble --out x", ["required: POLICY"]),
         ("gait amble p --out x --starts many", ["--starts: invalid int value: 'many'"]),
@@ -119,6 +119,11 @@ def test_a_mistake_is_one_sentence_with_the_nearest(line: str, expected: list[st
     sentence = refusal(*line.split())
     assert all(part in sentence for part in expected), sentence
     assert not CALLS
+
+
+def test_a_second_file_is_perhaps_the_output() -> None:
+    """As with `cp`: people write the file to make behind the file to read."""
+    assert "perhaps you meant --out b.png" in refusal("terrain", "convert", "a.npz", "b.png")
 
 
 def test_an_option_of_several_values_may_be_given_several_times() -> None:

@@ -222,9 +222,10 @@ def test_any_batch_shape_gives_the_same_numbers():
     motion, action = random_batch(env, 12)
     state = env.start(motion, route_to([1.0, 1.0], 12))
     reshape = lambda leaf: leaf.reshape(3, 4, *leaf.shape[1:])  # noqa: E731
-    _, one = env.step(atlas, weights, jax.tree.map(lambda leaf: leaf[5], state), action[5])
-    _, row = env.step(atlas, weights, state, action)
-    _, grid = env.step(atlas, weights, jax.tree.map(reshape, state), reshape(action))
+    step = jax.jit(env.step)
+    _, one = step(atlas, weights, jax.tree.map(lambda leaf: leaf[5], state), action[5])
+    _, row = step(atlas, weights, state, action)
+    _, grid = step(atlas, weights, jax.tree.map(reshape, state), reshape(action))
     np.testing.assert_allclose(grid.observation.reshape(12, -1), row.observation, atol=1e-5)
     np.testing.assert_allclose(one.observation, row.observation[5], atol=1e-5)
     assert one.reward.shape == ()
