@@ -4,9 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jaxleas.footsteps import FitSettings, fit_motion_models, mean_absolute_error
+from jaxleas.footsteps import FitSettings, fit_motion_models, mean_absolute_error, network
 from jaxleas.footsteps.features import predictors_of
 from jaxleas.footsteps.folds import folds_of
+from jaxleas.footsteps.judging import linear_scores, rival_scores
+from jaxleas.footsteps.pair_footsteps import PairFootsteps
 from jaxleas.footsteps.regression import (
     fit_linear,
     fit_table,
@@ -108,11 +110,21 @@ def test_the_table_of_means_answers_with_the_nearest_command():
 
 @pytest.mark.slow
 def test_the_network_learns_what_is_linear(made):
-    fitted = fit_motion_models(made, FitSettings())
-    linear = the_score(fitted.scores, "com x", pair="LF/RH")
-    network = the_score(fitted.scores, "com x", pair="LF/RH", model="network")
-    table = the_score(fitted.scores, "com x", pair="LF/RH", model="table", predictors="C1")
-    assert network.error < 1.5 * linear.error < table.error
+    part = PairFootsteps.of(made.footsteps, 0, made.controller, seed=0)
+    scores = [*linear_scores(part), *rival_scores(part, network.fit_network)]
+    linear = the_score(scores, "com x")
+    of_network = the_score(scores, "com x", model="network")
+    table = the_score(scores, "com x", model="table", predictors="C1")
+    assert of_network.error < 1.5 * linear.error < table.error
+
+
+def test_a_network_is_fitted_to_each_pair_unless_refused(made, fitted, monkeypatch):
+    monkeypatch.setattr(network, "UPDATES", 2)  # what it learns is another test's
+    network._train.clear_cache()
+    scores = fit_motion_models(made, FitSettings()).scores
+    network._train.clear_cache()
+    assert {each.pair for each in scores if each.model == "network"} == {"LF/RH", "RF/LH"}
+    assert not [each for each in fitted.scores if each.model == "network"]
 
 
 def test_too_few_footsteps_of_a_movement_are_counted(made):
