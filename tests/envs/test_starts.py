@@ -1,30 +1,26 @@
 import itertools
-from functools import partial
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.starts import draw_picks, pool_of, restart_where, take
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
-from jaxleas.envs.steering import draw_starts as draw_candidates
 from jaxleas.envs.steering.config import LinkShares
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena
 from jaxleas.types import InputError
 
+from . import compiled
+from .compiled import draw_picks, draw_pool, restart_where, take
 from .worlds import flat, height_map, world_of
 
-
-def draw_starts(env, world, key, count):
-    return pool_of(draw_candidates(env, world, key, count))
+DONE = np.arange(400) % 2 == 0
+"""Whose episode is over: every other robot's."""
 
 
 @pytest.fixture(scope="module")
 def env():
-    return SteeringEnv(SteeringConfig())
+    return compiled.steering_env()
 
 
 @pytest.fixture(scope="module")
@@ -34,48 +30,51 @@ def arena_world():
 
 
 def test_every_start_is_valid_and_its_goal_can_be_stood_at(env, arena_world):
-    pool = draw_starts(env, arena_world, jax.random.key(0), 512)
+    pool = draw_pool(env, arena_world, jax.random.key(0), 512)
     assert 0 < int(pool.valid_count) < 512  # some candidates fall: the check is not vacuous
     state, _ = take(pool, jax.random.key(1), 400)
-    observation = env.look(arena_world.atlas, state)
-    heights = env.local_heights(arena_world.atlas, state.plan.map_index, state.motion)
-    assert np.all(env.condition(heights, state.motion) >= 0.0)
-    np.testing.assert_array_equal(observation, env.observe(heights, state.motion, env.goal(state)))
-    first_goal = state.plan.goals[:, 0]
-    goal_ground = arena_world.atlas.height_at(state.plan.map_index, first_goal[:, None])
-    assert np.all(goal_ground > -100.0)
+    observation = compiled.look(env, arena_world.atlas, state)
+    heights = compiled.local_heights(env, arena_world.atlas, state.plan.map_index, state.motion)
+    assert np.all(np.asarray(compiled.condition(env, heights, state.motion)) >= 0.0)
+    in_two_passes = compiled.observe_local_heights(env, arena_world.atlas, state)
+    np.testing.assert_array_equal(observation, in_two_passes)
+    first_goal = np.asarray(state.plan.goals)[:, 0]
+    goal_ground = compiled.height_at(arena_world.atlas, state.plan.map_index, first_goal)
+    assert np.all(np.asarray(goal_ground) > -100.0)
 
 
 def test_starts_lie_in_start_areas_and_goals_in_goal_areas(env):
     world = world_of(height_map(flat), height_map(flat, half_size=3.0))
-    state, _ = take(draw_starts(env, world, jax.random.key(2), 256), jax.random.key(3), 256)
-    link = state.plan.map_index
-    for place, area in (
-        (state.motion.position[:, :2], world.start_area[link]),
-        (state.plan.goals[:, 0], world.goal_area[link]),
+    state, _ = take(draw_pool(env, world, jax.random.key(2), 256), jax.random.key(3), 256)
+    link = np.asarray(state.plan.map_index)
+    for place, areas in (
+        (np.asarray(state.motion.position)[:, :2], world.start_area),
+        (np.asarray(state.plan.goals)[:, 0], world.goal_area),
     ):
+        area = np.asarray(areas)[link]
         assert np.all((place >= area[:, 0::2]) & (place <= area[:, 1::2]))
     assert len(np.unique(link)) == 2
 
 
 def test_everything_about_a_start_varies(env, arena_world):
-    state, _ = take(draw_starts(env, arena_world, jax.random.key(4), 256), jax.random.key(5), 256)
+    state, _ = take(draw_pool(env, arena_world, jax.random.key(4), 512), jax.random.key(5), 400)
     assert len(np.unique(state.plan.map_index)) == 4
-    for values in (state.motion.position[:, 0], state.motion.yaw, env.goal(state)[:, 0]):
-        assert len(np.unique(values)) > 100
+    goal = np.asarray(compiled.goal(env, state))
+    for values in (np.asarray(state.motion.position)[:, 0], state.motion.yaw, goal[:, 0]):
+        assert len(np.unique(values)) > 160
     assert np.ptp(state.motion.yaw) > 6.0
-    still = np.linalg.norm(state.motion.velocity, axis=1) == 0.0
+    still = np.linalg.norm(np.asarray(state.motion.velocity), axis=1) == 0.0
     assert 0.3 < np.mean(still) < 0.7
 
 
 def test_no_start_is_replayed(env, arena_world):
     """Brax's own auto-reset restores one cached start for ever; ours never does."""
-    done = jnp.ones(64, dtype=bool)
-    state, _ = take(draw_starts(env, arena_world, jax.random.key(6), 256), jax.random.key(7), 64)
+    done = np.ones(400, dtype=bool)
+    state, _ = take(draw_pool(env, arena_world, jax.random.key(6), 512), jax.random.key(7), 400)
     seen = []
     for number in range(5):
         pool_key, take_key = jax.random.split(jax.random.key(100 + number))
-        pool = draw_starts(env, arena_world, pool_key, 256)
+        pool = draw_pool(env, arena_world, pool_key, 512)
         pick = draw_picks(pool, take_key, done.shape)
         state = restart_where(done, state, pool, pick)
         seen.append(np.asarray(state.motion.position))
@@ -84,33 +83,33 @@ def test_no_start_is_replayed(env, arena_world):
 
 
 def test_only_those_who_are_done_start_anew(env, arena_world):
-    pool = draw_starts(env, arena_world, jax.random.key(8), 256)
-    state, _ = take(pool, jax.random.key(9), 8)
-    state = state.replace(step=jnp.full(8, 17, dtype=jnp.int32))
-    done = jnp.array([True, False] * 4)
-    pick = draw_picks(pool, jax.random.key(10), done.shape)
-    after = restart_where(done, state, pool, pick)
-    np.testing.assert_array_equal(after.step, np.where(done, 0, 17))
-    np.testing.assert_array_equal(after.motion.position[1::2], state.motion.position[1::2])
-    np.testing.assert_array_equal(after.motion.yaw[::2], pool.state.motion.yaw[pick[::2]])
-    look = partial(env.look, arena_world.atlas)
-    seen = np.where(done[:, None], look(pool.state)[pick], look(state))
-    np.testing.assert_allclose(look(after), seen, atol=1e-5)
+    pool = draw_pool(env, arena_world, jax.random.key(8), 512)
+    state, _ = take(pool, jax.random.key(9), len(DONE))
+    state = state.replace(step=np.full(len(DONE), 17, dtype=np.int32))
+    pick = draw_picks(pool, jax.random.key(10), DONE.shape)
+    after = restart_where(DONE, state, pool, pick)
+    was, now, fresh, pick = jax.tree.map(
+        np.asarray, (state.motion, after.motion, pool.state.motion, pick)
+    )
+    np.testing.assert_array_equal(after.step, np.where(DONE, 0, 17))
+    np.testing.assert_array_equal(now.position[~DONE], was.position[~DONE])
+    np.testing.assert_array_equal(now.yaw[DONE], fresh.yaw[pick[DONE]])
+    old, new, pooled = (
+        np.asarray(compiled.look(env, arena_world.atlas, each))
+        for each in (state, after, pool.state)
+    )
+    np.testing.assert_allclose(new, np.where(DONE[:, None], pooled[pick], old), atol=1e-5)
 
 
 def test_every_valid_candidate_is_picked_alike_and_no_other(env, arena_world):
-    pool = draw_starts(env, arena_world, jax.random.key(8), 64)
+    pool = draw_pool(env, arena_world, jax.random.key(8), 512)
     count = int(pool.valid_count)
     picks = np.asarray(draw_picks(pool, jax.random.key(1), (200, count)))
-    valid = np.flatnonzero(
-        env.condition(
-            env.local_heights(arena_world.atlas, pool.state.plan.map_index, pool.state.motion),
-            pool.state.motion,
-        )
-        >= 0.0
-    )
-    often = np.bincount(picks.ravel(), minlength=64)
-    assert set(np.flatnonzero(often)) == set(np.asarray(pool.order[:count])) <= set(valid)
+    motion = pool.state.motion
+    heights = compiled.local_heights(env, arena_world.atlas, pool.state.plan.map_index, motion)
+    valid = np.flatnonzero(np.asarray(compiled.condition(env, heights, motion)) >= 0.0)
+    often = np.bincount(picks.ravel(), minlength=512)
+    assert set(np.flatnonzero(often)) == set(np.asarray(pool.order)[:count]) <= set(valid)
     assert np.all(np.abs(often[often > 0] - 200) < 6 * np.sqrt(200))
 
 
@@ -119,9 +118,10 @@ def test_nobody_starts_over_the_void(env):
     half = height_map(lambda x, y: np.where(x < -2.0, 0.0, np.nan))
     world = world_of(half)
     world = world.replace(goal_area=world.start_area)
-    state, _ = take(draw_starts(env, world, jax.random.key(11), 512), jax.random.key(12), 256)
-    assert np.all(state.motion.position[:, 0] < -1.8)
-    assert np.all(np.abs(state.motion.position[:, 2]) < 2.0)
+    state, _ = take(draw_pool(env, world, jax.random.key(11), 4096), jax.random.key(12), 4000)
+    position = np.asarray(state.motion.position)
+    assert np.all(position[:, 0] < -1.8)
+    assert np.all(np.abs(position[:, 2]) < 2.0)
 
 
 KINDS = [*LinkShares.model_fields]
@@ -135,8 +135,8 @@ def test_starts_are_shared_among_the_kinds_of_links_as_asked(env):
     share = np.diff(np.asarray(world.cumulative_share), prepend=0.0)
     for kind, expected in (("bridge", 0.5), ("stairs_up", 0.25), ("cliff", 0.25), ("void", 0.0)):
         assert share[kinds == kind].sum() == pytest.approx(expected, abs=1e-6)
-    state, _ = take(draw_starts(env, world, jax.random.key(0), 512), jax.random.key(1), 300)
-    starts = np.asarray(state.motion.position[:, :2])
+    state, _ = take(draw_pool(env, world, jax.random.key(0), 512), jax.random.key(1), 300)
+    starts = np.asarray(state.motion.position)[:, :2]
     allowed = np.asarray(world.start_area)[share > 0]
     low, high = allowed[:, 0::2], allowed[:, 1::2]
     inside = np.all((starts[:, None] >= low) & (starts[:, None] <= high), axis=-1)
@@ -150,20 +150,20 @@ def test_shares_that_no_link_can_serve_are_refused():
 
 
 def test_dead_ends_have_starts_though_nobody_can_arrive(env):
-    arenas = [generate_arena(GeneratorConfig(rows=3, columns=3), seed) for seed in range(3)]
+    arenas = [generate_arena(GeneratorConfig(rows=4, columns=4), seed) for seed in range(3)]
     world = make_world(arenas, 0.04, dict.fromkeys(KINDS, 0.0) | {"void": 1.0})
-    pool = draw_starts(env, world, jax.random.key(0), 256)
-    assert int(pool.valid_count) > 150
+    pool = draw_pool(env, world, jax.random.key(0), 512)
+    assert int(pool.valid_count) > 300
 
 
 def test_half_of_the_starts_are_near_and_a_fifth_wander(env):
     world = world_of(height_map(flat))
     x_min, x_max, y_min, y_max = np.asarray(world.start_area)[0]
     strip = x_max - 0.25 * (x_max - x_min)
-    world = world.replace(near_area=jnp.array([[strip, x_max, y_min, y_max]]))
-    pool = draw_starts(env, world, jax.random.key(0), 4096)
+    world = world.replace(near_area=np.array([[strip, x_max, y_min, y_max]], np.float32))
+    pool = draw_pool(env, world, jax.random.key(0), 4096)
     state, _ = take(pool, jax.random.key(1), 4000)
-    inside = np.asarray(state.motion.position[:, 0]) >= strip
+    inside = np.asarray(state.motion.position)[:, 0] >= strip
     # Half by choice, and a quarter of the others by chance.
     assert inside.mean() == pytest.approx(0.5 + 0.5 * 0.25, abs=0.04)
     assert np.mean(np.asarray(state.goal_index) == 1) == pytest.approx(0.2, abs=0.03)
