@@ -1,7 +1,6 @@
 """The steering environment: a slow twin, symmetries, and how episodes end."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -9,11 +8,14 @@ from jaxleas.envs.steering import RewardParams, SteeringConfig, SteeringEnv
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import RootMotion
 
+from . import compiled
 from .worlds import bumpy, flat, height_map, route_to, standing, world_of
+
+AHEAD = np.float32([[1.0, 0.0, 0.0, 0.0]])
 
 
 def make(observation="thesis144", **changes):
-    env = SteeringEnv(SteeringConfig(observation=observation, **changes))
+    env = compiled.steering_env(observation=observation, **changes)
     return env, RewardParams.of(env.config.reward)
 
 
@@ -68,14 +70,13 @@ def test_steps_equal_the_slow_twin(observation):
     heights = height_map(bumpy)
     world = world_of(heights)
     goal = np.array([3.0, 1.0])
-    state = env.start(standing(env, [[-1.0, 0.5]], 0.3), route_to(goal, 1))
+    state = compiled.start(env, standing(env, [[-1.0, 0.5]], 0.3), route_to(goal, 1))
     twin = (np.array([-1.0, 0.5, env.robot.walking_height]), np.zeros(3), 0.3)
     rng = np.random.default_rng(0)
-    step = jax.jit(env.step)
     unequal = 0
     for _ in range(60):
         action = rng.uniform(-1.3, 1.3, 4).astype(np.float32)
-        state, outcome = step(world.atlas, weights, state, jnp.asarray(action)[None])
+        state, outcome = compiled.step(env, world.atlas, weights, state, action[None])
         *twin, reward, observed = twin_step(env, heights, *twin, goal, action)
         np.testing.assert_allclose(state.motion.position[0], twin[0], atol=1e-5)
         np.testing.assert_allclose(state.motion.velocity[0], twin[1], atol=1e-6)
@@ -91,20 +92,18 @@ def test_steps_equal_the_slow_twin(observation):
 def random_batch(env, count=64, seed=3):
     rng = np.random.default_rng(seed)
     motion = RootMotion(
-        position=jnp.asarray(
-            np.c_[rng.uniform(-2, 2, (count, 2)), rng.uniform(0.85, 1.05, count)], jnp.float32
-        ),
-        velocity=jnp.asarray(rng.uniform(-0.1, 0.1, (count, 3)), jnp.float32),
-        yaw=jnp.asarray(rng.uniform(-np.pi, np.pi, count), jnp.float32),
+        position=np.c_[rng.uniform(-2, 2, (count, 2)), rng.uniform(0.85, 1.05, count)],
+        velocity=rng.uniform(-0.1, 0.1, (count, 3)),
+        yaw=rng.uniform(-np.pi, np.pi, count),
     )
-    action = jnp.asarray(rng.uniform(-1, 1, (count, 4)), jnp.float32)
-    return motion, action
+    action = rng.uniform(-1, 1, (count, 4))
+    return jax.tree.map(np.float32, (motion, action))
 
 
 def outcomes(env, weights, heights, motion, goal, action):
     count = len(motion.yaw)
-    state = env.start(motion, route_to(goal, count))
-    return jax.jit(env.step)(world_of(heights).atlas, weights, state, action)
+    state = compiled.start(env, motion, route_to(goal, count))
+    return compiled.step(env, world_of(heights).atlas, weights, state, action)
 
 
 def nearly_all_equal(left, right, tolerance=1e-4, share=0.01):
@@ -118,17 +117,15 @@ def test_turning_the_world_changes_nothing_the_policy_sees_or_earns():
     motion, action = random_batch(env)
     x, y = motion.position[:, 0], motion.position[:, 1]
     turned_motion = RootMotion(
-        position=jnp.stack([-y, x, motion.position[:, 2]], axis=-1),
-        velocity=jnp.stack(
+        position=np.stack([-y, x, motion.position[:, 2]], axis=-1),
+        velocity=np.stack(
             [-motion.velocity[:, 1], motion.velocity[:, 0], motion.velocity[:, 2]], axis=-1
         ),
-        yaw=motion.yaw + jnp.pi / 2,
+        yaw=motion.yaw + np.float32(np.pi / 2),
     )
-    goal = jnp.array([2.0, 1.0])
+    goal = [2.0, 1.0]
     _, plain = outcomes(env, weights, heights, motion, goal, action)
-    _, other = outcomes(
-        env, weights, turned(heights), turned_motion, jnp.array([-1.0, 2.0]), action
-    )
+    _, other = outcomes(env, weights, turned(heights), turned_motion, [-1.0, 2.0], action)
     nearly_all_equal(plain.observation, other.observation)
     np.testing.assert_allclose(plain.reward, other.reward, atol=1e-5)
     nearly_all_equal(plain.margin, other.margin, share=0.05)
@@ -138,19 +135,22 @@ def test_mirroring_the_world_mirrors_what_the_policy_sees():
     env, weights = make()
     heights = height_map(bumpy)
     motion, action = random_batch(env)
-    flip = jnp.array([[1.0, -1.0, 1.0]])
+    flip = np.float32([[1.0, -1.0, 1.0]])
     mirror_motion = RootMotion(motion.position * flip, motion.velocity * flip, -motion.yaw)
-    goal = jnp.array([2.0, 1.0])
+    goal = [2.0, 1.0]
     _, plain = outcomes(env, weights, heights, motion, goal, action)
     _, other = outcomes(
         env,
         weights,
         mirrored(heights),
         mirror_motion,
-        jnp.array([2.0, -1.0]),
-        action * jnp.array([[1.0, -1.0, 1.0, -1.0]]),
+        [2.0, -1.0],
+        action * np.float32([[1.0, -1.0, 1.0, -1.0]]),
     )
-    seen = plain.observation[:, env.layout.mirror_permutation] * env.layout.mirror_sign[None]
+    seen = (
+        np.asarray(plain.observation)[:, env.layout.mirror_permutation]
+        * env.layout.mirror_sign[None]
+    )
     nearly_all_equal(seen, other.observation)
     np.testing.assert_allclose(plain.reward, other.reward, atol=1e-5)
     nearly_all_equal(plain.margin, other.margin, share=0.05)
@@ -160,10 +160,9 @@ def test_walking_off_the_ground_terminates_and_is_not_a_truncation():
     env, weights = make()
     cliff = height_map(lambda x, y: np.where(x < 1.0, 0.0, np.nan))
     atlas = world_of(cliff).atlas
-    state = env.start(standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
-    step = jax.jit(env.step)
+    state = compiled.start(env, standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     for _ in range(200):
-        state, outcome = step(atlas, weights, state, jnp.array([[1.0, 0.0, 0.0, 0.0]]))
+        state, outcome = compiled.step(env, atlas, weights, state, AHEAD)
         if outcome.terminated[0]:
             break
     assert outcome.terminated[0]
@@ -176,12 +175,10 @@ def test_walking_off_the_ground_terminates_and_is_not_a_truncation():
 def test_running_into_a_wall_terminates():
     env, weights = make()
     wall = height_map(lambda x, y: np.where(x < 1.0, 0.0, 1.5))
-    state = env.start(standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
-    step = jax.jit(env.step)
+    atlas = world_of(wall).atlas
+    state = compiled.start(env, standing(env, [[0.5, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     for _ in range(200):
-        state, outcome = step(
-            world_of(wall).atlas, weights, state, jnp.array([[1.0, 0.0, 0.0, 0.0]])
-        )
+        state, outcome = compiled.step(env, atlas, weights, state, AHEAD)
         if outcome.terminated[0]:
             break
     front = max(box.high[0] for box in env.robot.trunk)
@@ -192,10 +189,10 @@ def test_running_into_a_wall_terminates():
 def test_an_episode_is_cut_after_its_steps_while_valid():
     env, weights = make(episode_steps=5)
     atlas = world_of(height_map(flat)).atlas
-    state = env.start(standing(env, [[0.0, 0.0]], 0.0), route_to([4.0, 0.0], 1))
+    state = compiled.start(env, standing(env, [[0.0, 0.0]], 0.0), route_to([4.0, 0.0], 1))
     flags = []
     for _ in range(5):
-        state, outcome = jax.jit(env.step)(atlas, weights, state, jnp.zeros((1, 4)))
+        state, outcome = compiled.step(env, atlas, weights, state, np.zeros((1, 4), np.float32))
         flags.append((bool(outcome.terminated[0]), bool(outcome.truncated[0])))
     assert flags == [(False, False)] * 4 + [(False, True)]
 
@@ -204,10 +201,10 @@ def test_a_goal_is_replaced_when_reached_and_when_its_time_is_up():
     env, weights = make()
     atlas = world_of(height_map(flat)).atlas
     places = [[0.0, 0.0], [-2.0, 0.0]]
-    state = env.start(standing(env, places, 0.0), route_to([0.1, 0.0], 2, steps=3))
+    state = compiled.start(env, standing(env, places, 0.0), route_to([0.1, 0.0], 2, steps=3))
     indices, reached = [], []
     for _ in range(3):
-        state, outcome = jax.jit(env.step)(atlas, weights, state, jnp.zeros((2, 4)))
+        state, outcome = compiled.step(env, atlas, weights, state, np.zeros((2, 4), np.float32))
         indices.append(state.goal_index.tolist())
         reached.append(outcome.reached.tolist())
     # The first robot stands on both goals in turn, the second waits out its three steps.
@@ -220,7 +217,7 @@ def test_any_batch_shape_gives_the_same_numbers():
     env, weights = make()
     atlas = world_of(height_map(bumpy)).atlas
     motion, action = random_batch(env, 12)
-    state = env.start(motion, route_to([1.0, 1.0], 12))
+    state = compiled.start(env, motion, route_to([1.0, 1.0], 12))
     reshape = lambda leaf: leaf.reshape(3, 4, *leaf.shape[1:])  # noqa: E731
     step = jax.jit(env.step)
     _, one = step(atlas, weights, jax.tree.map(lambda leaf: leaf[5], state), action[5])
@@ -242,9 +239,9 @@ def test_the_step_compiles_once():
         return env.step(atlas, weights, state, action)
 
     step = jax.jit(counted)
-    state = env.start(standing(env, [[0.0, 0.0]] * 4, 0.0), route_to([1.0, 0.0], 4))
+    state = compiled.start(env, standing(env, [[0.0, 0.0]] * 4, 0.0), route_to([1.0, 0.0], 4))
     for _ in range(5):
-        state, _ = step(state, jnp.zeros((4, 4)))
+        state, _ = step(state, np.zeros((4, 4), np.float32))
     assert traces == 1
 
 
@@ -252,6 +249,9 @@ def test_a_condition_of_ones_own_ends_episodes():
     config = SteeringConfig()
     env = SteeringEnv(config, condition=lambda heights, motion: motion.position[..., 0])
     atlas = world_of(height_map(flat)).atlas
-    state = env.start(standing(env, [[-1.0, 0.0], [1.0, 0.0]], 0.0), route_to([2.0, 0.0], 2))
-    _, outcome = env.step(atlas, RewardParams.of(config.reward), state, jnp.zeros((2, 4)))
+    state = compiled.start(
+        env, standing(env, [[-1.0, 0.0], [1.0, 0.0]], 0.0), route_to([2.0, 0.0], 2)
+    )
+    weights, action = RewardParams.of(config.reward), np.zeros((2, 4), np.float32)
+    _, outcome = compiled.step(env, atlas, weights, state, action)
     assert outcome.terminated.tolist() == [True, False]

@@ -1,19 +1,18 @@
 """Feelers: their margins beside a twin in NumPy, their mirror images, and what they tell apart."""
 
-import jax.numpy as jnp
 import numpy as np
 
 from jaxleas.conditions import outline_points
-from jaxleas.envs.steering import SteeringConfig, SteeringEnv
 from jaxleas.envs.steering.feelers import MOST_FELT, points_to_feel
 from jaxleas.envs.steering.layout import FEELERS169
 from jaxleas.robots import load_robot
 from jaxleas.terrain import HeightMap, make_atlas
 from jaxleas.types import RootMotion
 
+from . import compiled
 from .worlds import route_to
 
-ENV = SteeringEnv(SteeringConfig(observation="feelers169", outline_spacing=0.05))
+ENV = compiled.steering_env(observation="feelers169", outline_spacing=0.05)
 MOVES = FEELERS169.feelers
 RESOLUTION = 0.04
 
@@ -29,14 +28,15 @@ def rough_map(seed=0, cells=150):
     return HeightMap(heights, RESOLUTION, (-3.0, -3.0))
 
 
-def motions(count, seed=1):
+def motions(count=60, seed=1):
     rng = np.random.default_rng(seed)
     position = np.column_stack([rng.uniform(-2, 2, (count, 2)), rng.uniform(0.8, 1.1, count)])
-    return RootMotion(
-        position=jnp.asarray(position, jnp.float32),
-        velocity=jnp.zeros((count, 3)),
-        yaw=jnp.asarray(rng.uniform(-np.pi, np.pi, count), jnp.float32),
-    )
+    return at_rest(position, rng.uniform(-np.pi, np.pi, count))
+
+
+def at_rest(position, yaw):
+    position = np.asarray(position, np.float32)
+    return RootMotion(position, np.zeros_like(position), np.asarray(yaw, np.float32))
 
 
 def twin_margin(robot, heights, points):
@@ -65,13 +65,13 @@ def twin_margin(robot, heights, points):
 
 
 def test_margins_are_those_of_a_twin():
-    height_map, motion = rough_map(), motions(60)
+    height_map, motion = rough_map(), motions()
     atlas = make_atlas([height_map])
-    felt = np.asarray(_look(atlas, motion))[:, -len(MOVES) :]
+    felt = _look(atlas, motion)[:, -len(MOVES) :]
+    points = [points_to_feel(ENV.robot, move) for move in MOVES]
     agree = []
     for robot, (x, y, z) in enumerate(np.asarray(motion.position, np.float64)):
-        for feeler, (ahead, left, turn) in enumerate(MOVES):
-            own = points_to_feel(ENV.robot, (ahead, left, turn))
+        for feeler, ((ahead, left, turn), own) in enumerate(zip(MOVES, points, strict=True)):
             yaw = float(motion.yaw[robot])
             to_world = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
             middle = np.array([x, y]) + np.array([ahead, left]) @ to_world
@@ -86,31 +86,26 @@ def test_margins_are_those_of_a_twin():
 
 
 def test_looking_equals_observing_the_local_heights():
-    atlas, motion = make_atlas([rough_map()]), motions(40)
-    goal = jnp.ones((40, 2))
-    index = jnp.zeros(40, jnp.int32)
-    heights = ENV.local_heights(atlas, index, motion)
-    seen = ENV.observe(heights, motion, goal)
+    atlas, motion = make_atlas([rough_map()]), motions()
+    seen = compiled.observe_local_heights(ENV, atlas, _state(motion))
     np.testing.assert_allclose(_look(atlas, motion), seen, atol=1e-5)
 
 
 def test_the_first_values_are_those_of_the_layout_without_feelers():
-    atlas, motion = make_atlas([rough_map()]), motions(20)
-    plain = SteeringEnv(SteeringConfig())
-    index, goal = jnp.zeros(20, jnp.int32), jnp.ones((20, 2))
-    seen = plain.observe(plain.local_heights(atlas, index, motion), motion, goal)
+    atlas, motion = make_atlas([rough_map()]), motions()
+    seen = compiled.observe_local_heights(compiled.steering_env(), atlas, _state(motion))
     np.testing.assert_allclose(_look(atlas, motion)[:, :144], seen, atol=1e-5)
 
 
 def test_a_mirrored_world_is_felt_as_the_mirror_image():
     """The map is mirrored in y = 0, cell by cell, and so is the robot."""
-    height_map, motion = rough_map(3), motions(60, 4)
+    height_map, motion = rough_map(3), motions(seed=4)
     y = height_map.origin[1] + RESOLUTION * (height_map.heights.shape[0] - 1)
     image = HeightMap(height_map.heights[::-1].copy(), RESOLUTION, (height_map.origin[0], -y))
-    position = motion.position * jnp.array([[1.0, -1.0, 1.0]])
+    position = motion.position * np.float32([[1.0, -1.0, 1.0]])
     mirrored = RootMotion(position, motion.velocity, -motion.yaw)
-    seen = np.asarray(_look(make_atlas([height_map]), motion, goal=(1.0, 1.0)))
-    other = np.asarray(_look(make_atlas([image]), mirrored, goal=(1.0, -1.0)))
+    seen = _look(make_atlas([height_map]), motion, goal=(1.0, 1.0))
+    other = _look(make_atlas([image]), mirrored, goal=(1.0, -1.0))
     expected = seen[:, FEELERS169.mirror_permutation] * FEELERS169.mirror_sign
     assert np.mean(np.abs(other - expected) < 1e-4) > 0.995  # edges of cells, as above
     permutation = FEELERS169.mirror_permutation
@@ -125,14 +120,9 @@ def test_the_layout_adds_at_most_forty_numbers():
 def test_a_gap_of_12_cm_is_told_from_one_of_20():
     """At any distance up to 15 cm before the edge, turned or not."""
     offset, turn = (each.ravel() for each in np.meshgrid(np.linspace(0.0, 0.14, 8), [0.0, 0.6]))
-    motion = RootMotion(
-        position=jnp.asarray(np.stack([-0.1 - offset, 0.0 * turn, 0.95 + 0.0 * turn], axis=-1)),
-        velocity=jnp.zeros((len(turn), 3)),
-        yaw=jnp.asarray(turn),
-    )
+    motion = at_rest(np.stack([-0.1 - offset, 0.0 * turn, 0.95 + 0.0 * turn], axis=-1), turn)
     narrow, wide = (
-        np.asarray(_look(make_atlas([_with_gap(width)]), motion, goal=(2.0, 0.0)))
-        for width in (0.12, 0.20)
+        _look(make_atlas([_with_gap(width)]), motion, goal=(2.0, 0.0)) for width in (0.12, 0.20)
     )
     assert (np.abs(narrow - wide).max(axis=1) > 0.1).all()
 
@@ -162,12 +152,14 @@ def test_a_post_that_passes_between_the_usual_points_is_met():
     heights = np.zeros((100, 100), np.float32)
     heights[51, 53] = 1.5  # x = 0.12, y = 0.04
     atlas = make_atlas([HeightMap(heights, RESOLUTION, (-2.0, -2.0))])
-    motion = RootMotion(jnp.array([[0.0, 0.0, 0.95]]), jnp.zeros((1, 3)), jnp.zeros(1))
-    index = jnp.zeros(1, jnp.int32)
-    assert SteeringEnv(SteeringConfig()).margin(atlas, index, motion) > 0.0
-    assert ENV.margin(atlas, index, motion) < 0.0
+    motion, index = at_rest([[0.0, 0.0, 0.95]], [0.0]), np.zeros(1, np.int32)
+    assert compiled.margin(compiled.steering_env(), atlas, index, motion) > 0.0
+    assert compiled.margin(ENV, atlas, index, motion) < 0.0
+
+
+def _state(motion, goal=(1.0, 1.0)):
+    return compiled.start(ENV, motion, route_to(goal, len(motion.yaw)))
 
 
 def _look(atlas, motion, goal=(1.0, 1.0)):
-    state = ENV.start(motion, route_to(jnp.array(goal), len(motion.yaw)))
-    return ENV.look(atlas, state)
+    return np.asarray(compiled.look(ENV, atlas, _state(motion, goal)))

@@ -3,13 +3,10 @@
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.starts import pool_of, take
 from jaxleas.envs.steering import SteeringConfig, SteeringEnv, make_world
-from jaxleas.envs.steering import draw_starts as draw_candidates
 from jaxleas.envs.steering.own_terrain import FARTHEST, NEAREST, make_own_terrain
 from jaxleas.envs.steering.world import OwnMaps
 from jaxleas.terrain.config import GeneratorConfig
@@ -17,17 +14,12 @@ from jaxleas.terrain.generator import generate_arena
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.types import InputError, RootMotion
 
+from . import compiled
+from .compiled import draw_pool
 from .test_foresight import Patience
 from .worlds import flat, height_map, world_of
 
-ENV = SteeringEnv(SteeringConfig())
-
-
-def draw_starts(env, world, key, count):
-    return pool_of(draw_candidates(env, world, key, count))
-
-
-draw_jitted = jax.jit(draw_starts, static_argnums=(0, 3))
+ENV = compiled.steering_env()
 
 
 def islands(x, y):
@@ -49,32 +41,33 @@ def world():
 
 
 def drawn(world, count=512, seed=0, env=ENV, least=0.5):
-    pool = draw_jitted(env, world, jax.random.key(seed), 2 * count)
+    pool = draw_pool(env, world, jax.random.key(seed), 2 * count)
     assert int(pool.valid_count) > least * 2 * count  # few candidates are wasted
-    return take(pool, jax.random.key(seed + 1), count)[0]
+    return compiled.take(pool, jax.random.key(seed + 1), count)[0]
 
 
 def heights(world, map_index, points):
-    return np.asarray(world.atlas.height_at(map_index, jnp.asarray(points)[:, None]))[:, 0]
+    return np.asarray(compiled.height_at(world.atlas, map_index, points))
 
 
 def can_stand(world, map_index, places):
     """Whether a robot at walking height is valid over ground there, for some heading."""
     ground = heights(world, map_index, places)
-    position = jnp.asarray(np.column_stack([places, ground + ENV.robot.walking_height]))
+    position = np.column_stack([places, ground + ENV.robot.walking_height]).astype(np.float32)
     best = np.full(len(places), -1.0)
     for yaw in np.linspace(-np.pi, np.pi, 8, endpoint=False):
-        motion = RootMotion(position, jnp.zeros_like(position), jnp.full(len(places), yaw))
-        local = ENV.local_heights(world.atlas, map_index, motion)
-        best = np.maximum(best, ENV.condition(local, motion))
+        turned = np.full(len(places), yaw, np.float32)
+        motion = RootMotion(position, np.zeros_like(position), turned)
+        local = compiled.local_heights(ENV, world.atlas, map_index, motion)
+        best = np.maximum(best, compiled.condition(ENV, local, motion))
     return (best >= 0.0) & (ground > -100.0)
 
 
 def test_starts_are_valid_and_stand_at_walking_height_over_ground(world):
     state = drawn(world)
-    local = ENV.local_heights(world.atlas, state.plan.map_index, state.motion)
-    assert np.all(ENV.condition(local, state.motion) >= 0.0)
-    ground = heights(world, state.plan.map_index, state.motion.position[:, :2])
+    local = compiled.local_heights(ENV, world.atlas, state.plan.map_index, state.motion)
+    assert np.all(np.asarray(compiled.condition(ENV, local, state.motion)) >= 0.0)
+    ground = heights(world, state.plan.map_index, np.asarray(state.motion.position)[:, :2])
     above = np.asarray(state.motion.position[:, 2]) - ground - ENV.robot.walking_height
     assert np.all((above > -0.21) & (above < 0.08))
     assert set(np.unique(state.plan.map_index)) == {2, 3}  # both files, no arena
@@ -106,16 +99,16 @@ def test_starts_are_everywhere_that_is_valid(world):
 @pytest.mark.slow
 def test_the_share_says_how_many_starts_fall_on_files():
     world = world_with(height_map(flat, half_size=4.0), share=0.25)
-    pool = draw_starts(ENV, world, jax.random.key(0), 4096)
+    pool = draw_pool(ENV, world, jax.random.key(0), 4096)
     assert np.mean(np.asarray(pool.state.plan.map_index) == 2) == pytest.approx(0.25, abs=0.03)
 
 
 @pytest.mark.slow
 def test_the_other_starts_are_those_of_a_world_without_files():
     arenas = [generate_arena(GeneratorConfig(rows=3, columns=3), seed) for seed in range(2)]
-    plain = draw_starts(ENV, make_world(arenas, 0.05), jax.random.key(5), 256).state
+    plain = draw_pool(ENV, make_world(arenas, 0.05), jax.random.key(5), 256).state
     world = world_with(height_map(flat, half_size=4.0), share=0.5)
-    mixed = draw_starts(ENV, world, jax.random.key(5), 256).state
+    mixed = draw_pool(ENV, world, jax.random.key(5), 256).state
     others = np.asarray(mixed.plan.map_index) < 2
     assert 64 < others.sum() < 192
     for left, right in zip(jax.tree.leaves(plain), jax.tree.leaves(mixed), strict=True):
@@ -125,7 +118,7 @@ def test_the_other_starts_are_those_of_a_world_without_files():
 def test_a_world_without_files_draws_no_random_number_for_them():
     world = world_of(height_map(flat, half_size=3.0))
     assert world.own is None
-    jaxpr = jax.make_jaxpr(lambda key: draw_starts(ENV, world, key, 8))(jax.random.key(0))
+    jaxpr = jax.make_jaxpr(lambda key: draw_pool(ENV, world, key, 8))(jax.random.key(0))
     assert "key<fry>[5]" in str(jaxpr)
     assert "key<fry>[8]" not in str(jaxpr)
 
@@ -136,7 +129,7 @@ def test_the_key_of_the_starts_is_consumed_once(foreseen):
     patience: Any = Patience()
     env = SteeringEnv(SteeringConfig(), foresight=patience if foreseen else None)
     world = world_of(height_map(flat, half_size=3.0))
-    jaxpr = jax.make_jaxpr(lambda key: draw_starts(env, world, key, 8))(jax.random.key(0)).jaxpr
+    jaxpr = jax.make_jaxpr(lambda key: draw_pool(env, world, key, 8))(jax.random.key(0)).jaxpr
     (key,) = jaxpr.invars
     assert sum(each is key for equation in jaxpr.eqns for each in equation.invars) == 1
 

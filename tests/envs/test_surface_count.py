@@ -1,21 +1,27 @@
 """The number of surfaces around the robot: a flood fill as its twin, and who sees it."""
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering import THESIS144, THESIS145, SteeringConfig, SteeringEnv
+from jaxleas.envs.steering import THESIS144, THESIS145
 from jaxleas.envs.steering.surface_count import STEP, WINDOW, surface_count
 
+from . import compiled
 from .worlds import flat, height_map, standing, world_of
 
 ROWS, COLUMNS = THESIS145.rows, THESIS145.columns
 RANGE = (-1.4, -0.2)
 VOID = -1e4
+MOST = 72
+"""Number of terrains that are counted at a time."""
+COUNT = jax.jit(lambda heights: surface_count(heights, ROWS, COLUMNS, RANGE))
 
 
 def count(heights):
-    return np.asarray(surface_count(jnp.asarray(heights, jnp.float32), ROWS, COLUMNS, RANGE))
+    grids = np.atleast_2d(np.asarray(heights, np.float32))
+    rows = np.resize(grids, (MOST, grids.shape[1]))  # one shape: compiled once
+    return np.asarray(COUNT(rows))[: len(grids)].reshape(np.shape(heights)[:-1])
 
 
 def flood_fill(heights) -> int:
@@ -96,15 +102,15 @@ def test_left_and_right_do_not_matter():
 
 
 def test_the_policy_sees_it_after_the_heights():
-    env = SteeringEnv(SteeringConfig(observation="thesis145"))
-    plain = SteeringEnv(SteeringConfig())
+    env = compiled.steering_env(observation="thesis145")
+    plain = compiled.steering_env()
     world = world_of(height_map(lambda x, y: np.where(x > 0.2, 0.15, 0.0)), height_map(flat))
     motion = standing(env, [[0.0, 0.0], [0.0, 0.0]], 0.0)
-    heights = env.local_heights(world.atlas, world.map_index, motion)
-    goal = jnp.array([[2.0, 1.0], [2.0, 1.0]])
-    seen = np.asarray(env.observe(heights, motion, goal))
+    heights = compiled.local_heights(env, world.atlas, world.map_index, motion)
+    goal = np.float32([[2.0, 1.0], [2.0, 1.0]])
+    seen = np.asarray(compiled.observe(env, heights, motion, goal))
     assert seen.shape == (2, 145) == (2, env.layout.size)
-    np.testing.assert_array_equal(seen[:, :144], plain.observe(heights, motion, goal))
+    np.testing.assert_array_equal(seen[:, :144], compiled.observe(plain, heights, motion, goal))
     np.testing.assert_array_equal(seen[:, 144], [2.0, 1.0])
 
 

@@ -37,14 +37,14 @@ def world_of(*maps: HeightMap) -> World:
     goal[:, 0] = areas[:, 1] - third
     return World(
         atlas=make_atlas(maps),
-        map_index=jnp.arange(len(maps), dtype=jnp.int32),
+        map_index=jnp.asarray(np.arange(len(maps), dtype=np.int32)),
         start_area=jnp.asarray(start),
         near_area=jnp.asarray(start),
         goal_area=jnp.asarray(goal),
         arena_area=jnp.asarray(areas),
-        kind=jnp.zeros(len(maps), dtype=jnp.int32),
-        crossable=jnp.ones(len(maps), dtype=bool),
-        cumulative_share=jnp.linspace(1 / len(maps), 1.0, len(maps)),
+        kind=jnp.asarray(np.zeros(len(maps), np.int32)),
+        crossable=jnp.asarray(np.ones(len(maps), bool)),
+        cumulative_share=jnp.asarray(np.linspace(1 / len(maps), 1.0, len(maps)), jnp.float32),
     )
 
 
@@ -54,16 +54,17 @@ def standing(env: SteeringEnv, places, yaw, ground=0.0) -> RootMotion:
     z = np.full((len(places), 1), ground + env.robot.walking_height, np.float32)
     return RootMotion(
         position=jnp.asarray(np.concatenate([places, z], axis=1)),
-        velocity=jnp.zeros((len(places), 3)),
-        yaw=jnp.broadcast_to(jnp.asarray(yaw, dtype=jnp.float32), (len(places),)),
+        velocity=jnp.asarray(np.zeros((len(places), 3), np.float32)),
+        yaw=jnp.asarray(np.broadcast_to(np.float32(yaw), (len(places),))),
     )
 
 
 def route_to(goal, count: int, steps: int = 10_000) -> Route:
     """Everybody is sent to one goal, then to the origin for ever."""
-    goals = jnp.zeros((count, GOALS, 2)).at[:, 0].set(jnp.asarray(goal)[None])
+    goals = np.zeros((count, GOALS, 2), np.float32)
+    goals[:, 0] = goal
     return Route(
-        map_index=jnp.zeros(count, dtype=jnp.int32),
-        goals=goals,
-        goal_steps=jnp.full((count, GOALS), steps, dtype=jnp.int32),
+        map_index=jnp.asarray(np.zeros(count, np.int32)),
+        goals=jnp.asarray(goals),
+        goal_steps=jnp.asarray(np.full((count, GOALS), steps, np.int32)),
     )

@@ -6,6 +6,7 @@ import pytest
 from jaxleas.evaluation.starts import crossing_direction, draw_starts, make_grounds
 from jaxleas.evaluation.suites import SUITES, Cell, make_suite
 from jaxleas.types import InputError
+from tests.envs.compiled import condition, local_heights
 from tests.evaluation.conftest import flat_scene
 
 
@@ -16,29 +17,31 @@ def test_starts_are_valid_at_walking_height_and_speed_in_their_area(env, name):
     for cell in suite.cells:
         starts = draw_starts(env, grounds, cell, suite.seed)
         motion = starts.motion
-        heights = env.local_heights(grounds.atlas, starts.map_index, motion)
-        assert np.all(env.condition(heights, motion) >= 0.0)
-        speed = np.linalg.norm(motion.velocity, axis=-1)
+        heights = local_heights(env, grounds.atlas, starts.map_index, motion)
+        assert np.all(np.asarray(condition(env, heights, motion)) >= 0.0)
+        position = np.asarray(motion.position, dtype=np.float64)
+        map_index = np.asarray(starts.map_index)
+        speed = np.linalg.norm(np.asarray(motion.velocity), axis=-1)
         assert speed == pytest.approx(np.full(cell.starts, cell.speed), abs=1e-6)
         for index in range(cell.starts):
             each = len(cell.scenarios[0].start_areas)
             scenario = cell.scenarios[index // each % len(cell.scenarios)]
             x_min, x_max, y_min, y_max = scenario.start_areas[starts.area[index]]
-            x, y, z = np.asarray(motion.position[index], dtype=np.float64)
+            x, y, z = position[index]
             assert x_min - 1e-6 <= x <= x_max + 1e-6
             assert y_min - 1e-6 <= y <= y_max + 1e-6
-            ground = grounds.maps[starts.map_index[index]].height_at(np.array([[x, y]]))[0]
+            ground = grounds.maps[map_index[index]].height_at(np.array([[x, y]]))[0]
             assert z == pytest.approx(ground + env.robot.walking_height, abs=1e-5)
 
 
 def test_every_heading_is_exactly_the_cells(env):
-    suite = make_suite("transitions", 10)
+    suite = make_suite("transitions", 24)
     grounds = make_grounds(suite.cells)
     for cell in suite.cells:
         yaw = np.asarray(draw_starts(env, grounds, cell, 0).motion.yaw)
         wanted = crossing_direction(cell.scenarios[0]) + np.deg2rad(cell.yaw)
-        assert np.cos(yaw) == pytest.approx(np.full(10, np.cos(wanted)), abs=1e-6)
-        assert np.sin(yaw) == pytest.approx(np.full(10, np.sin(wanted)), abs=1e-6)
+        assert np.cos(yaw) == pytest.approx(np.full(24, np.cos(wanted)), abs=1e-6)
+        assert np.sin(yaw) == pytest.approx(np.full(24, np.sin(wanted)), abs=1e-6)
 
 
 def test_headings_towards_the_goal_are_spread_to_both_sides_and_speeds_go_along_them(env):
@@ -46,7 +49,7 @@ def test_headings_towards_the_goal_are_spread_to_both_sides_and_speeds_go_along_
     cell = next(each for each in suite.cells if each.key == ("rotation", 90.0, 30.0, 0.07))
     starts = draw_starts(env, make_grounds([cell]), cell, 0)
     yaw = np.asarray(starts.motion.yaw, dtype=np.float64)
-    way = np.asarray(starts.waypoints[:, 0] - starts.motion.position, dtype=np.float64)
+    way = np.asarray(starts.waypoints)[:, 0] - np.asarray(starts.motion.position, np.float64)
     aside = np.angle(np.exp(1j * (yaw - np.arctan2(way[:, 1], way[:, 0]))), deg=True)
     assert np.abs(aside).min() >= 60.0 - 1e-3
     assert np.abs(aside).max() <= 120.0 + 1e-3
@@ -79,7 +82,7 @@ def test_the_goal_of_a_scene_is_fixed_in_its_goal_area(env):
 
 
 def test_draws_are_the_cells_own(env):
-    suite = make_suite("hole", 20)
+    suite = make_suite("hole", 24)
     grounds, cell = make_grounds(suite.cells), suite.cells[0]
     one, again = (draw_starts(env, grounds, cell, 0).motion.position for _ in range(2))
     assert np.array_equal(one, again)
