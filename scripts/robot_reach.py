@@ -16,6 +16,7 @@ MOST_TILT = np.deg2rad(15.0)
 CLEARANCE = 0.02  # between the sole and the trunk's bottom [m]
 SIMPLIFIED_WITHIN = 0.005  # [m]
 SAMPLES_AT_ONCE = 200_000
+PLACED_AT_ONCE = 4_000  # their frames stay in a core's cache: more than twice as fast
 MIRROR = np.array([1.0, -1.0, 1.0])
 
 
@@ -28,17 +29,18 @@ def sample_configurations(recipe: Recipe, samples: int, seed: int) -> np.ndarray
 
 
 def sample_soles(recipe: Recipe, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Draw configurations and place their soles, some at a time to spare memory."""
-    configurations = sample_configurations(recipe, samples, seed)
-    chunks = np.array_split(configurations, max(1, samples // SAMPLES_AT_ONCE))
-    placed = [place_soles(recipe, chunk) for chunk in chunks]
-    return np.concatenate([p[0] for p in placed]), np.concatenate([p[1] for p in placed])
+    """Draw configurations and place their soles."""
+    return place_soles(recipe, sample_configurations(recipe, samples, seed))
 
 
 def place_soles(recipe: Recipe, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the middle [m] and the upward normal of each sole in the root frame."""
-    posture = chain_posture(recipe.chain, configurations)
-    return posture.tip, posture.tip_rotation[:, :, 2]
+    middles, normals = np.empty((len(configurations), 3)), np.empty((len(configurations), 3))
+    for start in range(0, len(configurations), PLACED_AT_ONCE):
+        some = slice(start, start + PLACED_AT_ONCE)
+        posture = chain_posture(recipe.chain, configurations[some])
+        middles[some], normals[some] = posture.tip, posture.tip_rotation[:, :, 2]
+    return middles, normals
 
 
 def keep_standing(recipe: Recipe, soles: np.ndarray, normals: np.ndarray) -> np.ndarray:
