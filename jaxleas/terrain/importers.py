@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from jaxleas.terrain.cells import padded_groups
 from jaxleas.terrain.height_map import (
     HeightMap,
     require_resolution,
@@ -21,7 +22,6 @@ from jaxleas.terrain.meshes.to_scene import read_placed_scene
 from jaxleas.terrain.meshes.triangles import read_triangles
 from jaxleas.terrain.rasterise import (
     DEFAULT_RESOLUTION,
-    padded_groups,
     rasterise,
     rasterise_polygons,
 )

@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.terrain.areas import area_vectors, lengths
+from jaxleas.terrain.cells import covered_cells
 from jaxleas.terrain.height_map import HeightMap
 from jaxleas.terrain.polygons import VERTICAL_SLOPE
-from jaxleas.terrain.rasterise import covered_cells
 from jaxleas.types import is_ground
 
 _LOG = logging.getLogger("jaxleas")

@@ -139,7 +139,7 @@ def _polygons(
     if not isinstance(group, dict):
         raise InputError(f"{path}: '{key}' must be an object of name: [[x, y, z], ...]")
     polygons = {name: _polygon(path, key, name, each, dimensions) for name, each in group.items()}
-    # They become one array, padded to the largest polygon (terrain/rasterise.py).
+    # They become one array, padded to the largest polygon (terrain/cells.py).
     corners = len(polygons) * max((len(each) for each in polygons.values()), default=0)
     if corners > MAX_CORNERS:
         raise InputError(

@@ -4,7 +4,7 @@ import jax
 import numpy as np
 import pytest
 
-from jaxleas.envs.steering.config import LinkShares
+from jaxleas.envs.steering.terrain_config import LinkShares
 from jaxleas.envs.steering.world import make_world
 from jaxleas.terrain.config import GeneratorConfig
 from jaxleas.terrain.generator import generate_arena

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from jaxleas.terrain import GeneratorConfig, Scene, TileKind, generate_arena, rasterise
+from jaxleas.terrain.cells import BLOCK, padded_groups
 from jaxleas.terrain.config import BridgeConfig
-from jaxleas.terrain.rasterise import BLOCK, CLOSING, padded_groups, rasterise_polygons
+from jaxleas.terrain.rasterise import CLOSING, rasterise_polygons
 from jaxleas.types import InputError
 
 RESOLUTION = 0.05

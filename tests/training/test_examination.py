@@ -6,7 +6,7 @@ import pytest
 
 from jaxleas.envs import Examination
 from jaxleas.envs.steering import Steering, SteeringConfig, TerrainConfig
-from jaxleas.envs.steering.config import LinkShares
+from jaxleas.envs.steering.terrain_config import LinkShares
 from jaxleas.training.config import HeldOutConfig
 from jaxleas.training.examination import _fractions
 

@@ -1,7 +1,6 @@
 from .config import MotionLimits as MotionLimits
 from .config import RewardWeights as RewardWeights
 from .config import SteeringConfig as SteeringConfig
-from .config import TerrainConfig as TerrainConfig
 from .description import FORMAT as FORMAT
 from .description import describe_observation as describe_observation
 from .description import describe_steering as describe_steering
@@ -24,5 +23,6 @@ from .state import SeenResult as SeenResult
 from .state import SteeringResult as SteeringResult
 from .state import SteeringState as SteeringState
 from .task import Steering as Steering
+from .terrain_config import TerrainConfig as TerrainConfig
 from .world import World as World
 from .world import make_world as make_world

@@ -10,12 +10,13 @@ from jaxtyping import Float, Key
 
 from jaxleas.conditions import Condition, Foresight
 from jaxleas.envs import Examination, Starts, Task
-from jaxleas.envs.steering.config import SteeringConfig, TerrainConfig
+from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.own_terrain import make_own_terrain
 from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts
 from jaxleas.envs.steering.state import SteeringResult, SteeringState
+from jaxleas.envs.steering.terrain_config import TerrainConfig
 from jaxleas.envs.steering.world import KINDS, OwnMaps, World, make_world
 from jaxleas.terrain import generate_arena, read_own_terrain
 

@@ -10,8 +10,8 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering.config import LinkShares
 from jaxleas.envs.steering.own_terrain import OwnTerrain, make_own_terrain
+from jaxleas.envs.steering.terrain_config import LinkShares
 from jaxleas.robots import Robot
 from jaxleas.terrain import Arena, Atlas, HeightMap, Link, make_atlas, rasterise
 from jaxleas.types import InputError
