@@ -1,5 +1,7 @@
 """A surrogate in the environment: when it looks, what it remembers, how often it ends a walk."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -32,13 +34,29 @@ def walk(count, steps, seed=0):
     generator = np.random.default_rng(seed)
     for step in range(steps + 1):
         yield (
-            jnp.asarray(generator.uniform(-1.4, -0.2, (count, POINTS)), jnp.float32),
+            np.float32(generator.uniform(-1.4, -0.2, (count, POINTS))),
             RootMotion(
-                jnp.asarray(generator.normal(size=(count, 3)) + 0.02 * step, jnp.float32),
-                jnp.asarray(0.1 * generator.normal(size=(count, 3)), jnp.float32),
-                jnp.asarray(generator.uniform(-3, 3, count), jnp.float32),
+                np.float32(generator.normal(size=(count, 3)) + 0.02 * step),
+                np.float32(0.1 * generator.normal(size=(count, 3))),
+                np.float32(generator.uniform(-3, 3, count)),
             ),
         )
+
+
+def standing_still(count):
+    """Heights of level ground, and motions at rest."""
+    rest = np.zeros((count, 3), np.float32)
+    return np.full((count, POINTS), -0.95, np.float32), RootMotion(rest, rest, rest[:, 0])
+
+
+@partial(jax.jit, static_argnums=0)
+def begin(judge, heights, motion, chance):
+    return judge.begin(heights, motion, chance)
+
+
+@partial(jax.jit, static_argnums=0)
+def follow(judge, memory, heights, motion):
+    return judge.follow(memory, around(heights), motion)
 
 
 def around(heights):
@@ -46,6 +64,7 @@ def around(heights):
     return lambda pick, points: pick(heights)[..., points]
 
 
+@jax.jit
 def shown(heights, motion, last):
     """Features of a kept configuration."""
     return path_features(heights[:, NEAR], motion, last, KEEP_EVERY, (-1.4, -0.2))
@@ -54,14 +73,15 @@ def shown(heights, motion, last):
 def test_survival_is_the_product_over_kept_configurations_alone():
     judge, one = SurrogateForesight(surrogate()), surrogate()
     steps = list(walk(4, 3 * KEEP_EVERY))
-    margin, memory = judge.begin(*steps[0], jnp.full(4, 0.25))
+    margin, memory = begin(judge, *steps[0], np.full(4, 0.25, np.float32))
+    look_once = jax.jit(one.hazard)
     hidden, last, survival = one.begin((4,)), steps[0][1], np.ones(4)
     for number, (heights, motion) in enumerate(steps):
         if number:
-            margin, memory = judge.follow(memory, around(heights), motion)
+            margin, memory = follow(judge, memory, heights, motion)
         if number % KEEP_EVERY == 0:
             features = shown(heights, motion, last)
-            hidden, hazard = one.hazard(hidden, features)
+            hidden, hazard = look_once(hidden, features)
             survival, last = survival * (1 - np.asarray(hazard)), motion
         np.testing.assert_allclose(margin, survival - 0.25, atol=1e-5)
     assert np.all(survival < 0.95)  # the test is not about ones
@@ -71,21 +91,18 @@ def test_walks_end_as_often_as_the_hazard_says():
     count, hazard = 20_000, 0.2
     judge = SurrogateForesight(surrogate(hazard))
     chance = jax.random.uniform(jax.random.key(5), (count,))
-    heights = jnp.full((count, POINTS), -0.95)
-    still = RootMotion(jnp.zeros((count, 3)), jnp.zeros((count, 3)), jnp.zeros(count))
-    margin, memory = judge.begin(heights, still, chance)
+    heights, still = standing_still(count)
+    margin, memory = begin(judge, heights, still, chance)
     for kept in range(1, 4):
-        assert np.mean(margin < 0) == pytest.approx(1 - (1 - hazard) ** kept, abs=0.012)
+        assert np.mean(np.asarray(margin) < 0) == pytest.approx(1 - (1 - hazard) ** kept, abs=0.012)
         for _ in range(KEEP_EVERY):
-            margin, memory = judge.follow(memory, around(heights), still)
+            margin, memory = follow(judge, memory, heights, still)
 
 
 def test_the_risk_dial_ends_what_has_become_too_unsure():
     judge = SurrogateForesight(surrogate(0.2), threshold=0.9)
-    heights = jnp.full((3, POINTS), -0.95)
-    still = RootMotion(jnp.zeros((3, 3)), jnp.zeros((3, 3)), jnp.zeros(3))
-    margin, _ = judge.begin(heights, still, jnp.array([0.0, 0.5, 0.99]))
-    assert np.all(margin < 0.0)
+    margin, _ = begin(judge, *standing_still(3), np.float32([0.0, 0.5, 0.99]))
+    assert np.all(np.asarray(margin) < 0.0)
     with pytest.raises(InputError, match=r"threshold is 1\.0"):
         SurrogateForesight(surrogate(), threshold=1.0)
 
@@ -126,14 +143,13 @@ def test_in_turns_everybody_is_judged_as_ever_once_their_times_are_apart():
 def test_in_turns_costs_what_the_few_who_are_due_cost():
     looked = []
     judge = SurrogateForesight(surrogate(), queue=True)
-    heights = jnp.full((2 * GROUP, POINTS), -0.95)
-    still = RootMotion(*(jnp.zeros((2 * GROUP, *shape)) for shape in ((3,), (3,), ())))
-    _, memory = judge.begin(heights, still, jnp.zeros(2 * GROUP))
+    heights, still = standing_still(2 * GROUP)
+    _, memory = begin(judge, heights, still, np.zeros(2 * GROUP, np.float32))
 
     def look_around(pick, points):
         looked.append(pick(heights)[:, points])
         return looked[0]
 
-    judge.follow(memory, look_around, still)
+    jax.jit(lambda memory: judge.follow(memory, look_around, still))(memory)
     assert looked[0].size < 0.35 * len(heights) * len(NEAR)
     assert 0 < len(NEAR) < 0.6 * POINTS
