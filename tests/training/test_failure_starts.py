@@ -1,7 +1,6 @@
 """Starts of groups that fail often are drawn more often, on the device and on the host."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -150,9 +149,9 @@ def test_each_candidate_is_drawn_as_often_as_said(candidates, share):
     count = 40_000
     failing = np.where(starts.valid, rate[starts.group], 0.0)
     expected = (1 - share) * starts.valid / starts.valid.sum() + share * failing / failing.sum()
-    on_device = draw_failing_picks(
-        pool_of(starts), jax.random.key(1), (count,), jnp.asarray(rate), share
-    )
+    pool = jax.jit(pool_of)(starts)
+    draw = jax.jit(draw_failing_picks, static_argnums=2)
+    on_device = draw(pool, jax.random.key(1), (count,), rate, share)
     host = HostPool.of(starts)
     picks = host.draw_failing_picks(np.random.default_rng(1), (count,), rate, share)
     on_host = host.state["number"][picks]
@@ -168,7 +167,7 @@ def test_episodes_are_counted_alike_on_device_and_host():
     over = generator.uniform(size=(5, 7)) < 0.5
     failed = over & (generator.uniform(size=(5, 7)) < 0.5)
     before = Failures(began[0], np.float32([4, 0, 1]), np.float32([2, 0, 1]))
-    on_device = counted(jax.tree.map(jnp.asarray, before), began, over, failed, began[-1])
+    on_device = jax.jit(counted)(before, began, over, failed, began[-1])
     on_host = counted_on_host(before, began, over, failed, began[-1])
     slow = [4 * 0.9, 0.0, 0.9], [2 * 0.9, 0.0, 0.9]
     for row in range(5):

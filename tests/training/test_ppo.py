@@ -1,7 +1,6 @@
 """PPO meets worlds whose answers are known."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -67,8 +66,8 @@ def test_the_reward_is_weighed_by_the_progress_of_the_training():
 
 
 def mean_value(state, networks) -> float:
-    seen = normalise(state.observation, state.normaliser)
-    return float(jnp.mean(networks.values(state.params.value, seen)))
+    seen = jax.jit(normalise)(state.observation, state.normaliser)
+    return float(np.mean(np.asarray(jax.jit(networks.values)(state.params.value, seen))))
 
 
 def test_the_value_of_staying_alive_is_the_geometric_sum():
@@ -114,35 +113,40 @@ def test_running_statistics_learn_the_observation():
 
 def test_mirroring_flips_whole_robots_and_twice_is_none():
     signature = SteeringConfig().signature()
-    key = jax.random.key(0)
-    shape = (5, 32)
+    generator, shape = np.random.default_rng(0), (5, 32)
+    nothing = np.zeros(shape, np.float32)
+
+    def normal(*shape):
+        return np.float32(generator.normal(size=shape))
+
     batch = Experience(
-        observation=jax.random.normal(key, (*shape, signature.size)),
-        raw_action=jax.random.normal(key, (*shape, 4)),
-        distributions=(
-            NormalDistribution(jax.random.normal(key, (*shape, 4)), jnp.ones((*shape, 4))),
-        ),
-        reward=jnp.zeros(shape),
-        terminated=jnp.zeros(shape),
-        truncated=jnp.zeros(shape),
+        observation=normal(*shape, signature.size),
+        raw_action=normal(*shape, 4),
+        distributions=(NormalDistribution(normal(*shape, 4), np.ones((*shape, 4), np.float32)),),
+        reward=nothing,
+        terminated=nothing,
+        truncated=nothing,
     )
-    last = jax.random.normal(key, (1, 32, signature.size))
-    flip = jax.random.bernoulli(jax.random.key(3), 0.5, (32,))
-    everybody = jnp.arange(32)
-    images = mirror_images(signature, batch, last[0])
-    once = take_robots(*images, everybody, flip)
-    twice = take_robots(*mirror_images(signature, once[0], once[1][0]), everybody, flip)
+    last = normal(1, 32, signature.size)
+    flip = generator.random(32) < 0.5
+    assert 0 < flip.sum() < 32
+    everybody = np.arange(32)
+    mirror = jax.jit(lambda batch, last: mirror_images(signature, batch, last[0]))
+    take = jax.jit(take_robots)
+    images = mirror(batch, last)
+    once = take(*images, everybody, flip)
+    twice = take(*mirror(*once), everybody, flip)
     jax.tree.map(np.testing.assert_array_equal, twice, (batch, last))
-    some = jnp.array([7, 3, 30])
-    few = take_robots(*images, some, flip[some])
+    some = np.array([7, 3, 30])
+    few = take(*images, some, flip[some])
+    once = jax.tree.map(np.asarray, once)
     jax.tree.map(
         lambda of_few, of_all: np.testing.assert_array_equal(of_few, of_all[:, some]), few, once
     )
     for before, after in ((batch.observation, once[0].observation), (last, once[1])):
-        np.testing.assert_array_equal(np.any(np.asarray(after != before), axis=(0, 2)), flip)
-        heights = np.asarray(before)[:, :, 4:].reshape(-1, 32, 10, 14)[..., ::-1]
+        np.testing.assert_array_equal(np.any(after != before, axis=(0, 2)), flip)
+        heights = before[:, :, 4:].reshape(-1, 32, 10, 14)[..., ::-1]
         expected = heights.reshape(-1, 32, 140)[:, flip]
-        np.testing.assert_array_equal(np.asarray(after)[:, flip, 4:], expected)
-    sideways = np.asarray(once[0].raw_action[..., 1])
-    original = np.asarray(batch.raw_action[..., 1])
+        np.testing.assert_array_equal(after[:, flip, 4:], expected)
+    sideways, original = once[0].raw_action[..., 1], batch.raw_action[..., 1]
     np.testing.assert_array_equal(sideways, np.where(flip[None], -original, original))
