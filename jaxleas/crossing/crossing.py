@@ -67,12 +67,14 @@ class _Robot:
         pair: index of the pair that is expected to swing next.
         decision: last decision.
         decided: time of the last decision [s].
+        earlier: command before the last decision.
     """
 
     commander: Commander
     pair: int
     decision: Decision | None = None
     decided: float = -np.inf
+    earlier: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
     footsteps: list[WalkedFootstep] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     ended: tuple[Outcome, float, str] | None = None
@@ -144,6 +146,7 @@ def _attend(
     if not (ended != NONE or robot.decision is None or rests or waited >= LATE):
         return
     decision = robot.commander.decide(_state(robot, index, sensed))
+    robot.earlier = _command(robot)
     robot.decision, robot.decided = decision, now
     robot.seconds.append(decision.seconds)
     if rests and decision.intent != "go":
@@ -168,6 +171,7 @@ def _state(robot: _Robot, index: int, sensed: Sensed) -> WalkingState:
         feet=sensed.feet[index],
         pair=robot.pair,
         command=_command(robot),
+        earlier=robot.earlier,
     )
 
 

@@ -19,6 +19,8 @@ class WalkSettings:
         climbing: the same where a foot steps up or down.
         jump: largest change of the command between footsteps, its parts over the controller's
             largest, in sum.
+        sway: largest difference of two changes of the forward speed in turn, over the controller's
+            largest.
         doubt: what each planned footstep before adds to the buffer of a landing [m].
         seconds: time after which the walk ends [s].
     """
@@ -29,6 +31,7 @@ class WalkSettings:
     fastest: float = 1.0
     climbing: float = 0.5
     jump: float = 0.6
+    sway: float = 1.0
     doubt: float = 0.002
     seconds: float = 120.0
 
@@ -49,9 +52,13 @@ class WalkSettings:
             fastest=self.fastest,
             climbing=self.climbing,
             jump=self.jump,
+            sway=self.sway,
+            concessions=CONCESSIONS,
             doubt=self.doubt,
         )
 
 
+CONCESSIONS = (0.75, 0.5, 0.25)
+"""Shares of the buffer that a walking robot keeps where it has no safe command."""
 LONGEST = 3600.0
 """Longest walk: what is logged of it takes a gigabyte [s]."""

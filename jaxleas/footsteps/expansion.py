@@ -14,6 +14,8 @@ from jaxleas.types import InputError
 
 CLIMBS = 0.02
 """Rise or drop of a footstep from which on it climbs [m]."""
+SWAYS = 0.5
+"""Share of the largest forward speed up to which a robot does not sway, however it changes."""
 
 
 @dataclass(frozen=True)
@@ -27,12 +29,15 @@ class Limits:
         doubt: what each footstep before adds to the buffer of a landing [m].
         jump: largest change of the command from one footstep to the next: sum over its parts, each
             over the controller's largest.
+        sway: largest difference of two changes of the forward speed in turn, over the controller's
+            largest; where it is nowhere above `SWAYS`, any.
     """
 
     fastest: float = 1.0
     climbing: float = 1.0
     doubt: float = 0.0
     jump: float = np.inf
+    sway: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +51,7 @@ class Node:
         feet: positions of the feet [m].
         pair: index of the pair that swings next.
         command: command that led here.
+        earlier: command before that one.
         spent: cost so far.
         depth: number of footsteps so far.
         parent: state before; None at the start.
@@ -57,6 +63,7 @@ class Node:
     feet: Float[np.ndarray, "E 3"]
     pair: int
     command: Float[np.ndarray, "3"]
+    earlier: Float[np.ndarray, "3"]
     spent: float = 0.0
     depth: int = 0
     parent: "Node | None" = None
@@ -122,16 +129,21 @@ class Expander:
         self._climbing = climbing * model.controller.max_speeds[0] if climbing < 1.0 else np.inf
         self.refused: dict[Refusal, int] = {}
         self.miss: Miss | None = None
-        self.forget()
-        self._map = FramedMap(costs)
-        self._doubt, self._jump = limits.doubt, limits.jump
+        self._map = FramedMap(costs, model.controller.foot_radius)
+        self._limits, self._share = limits, 1.0
         self._shares = self.commands / self._largest
+        self.forget()
         # The command's share of a prediction is the same in every state.
         self._of_command = [self.commands @ weights[:3] for weights in model.weights]
         self._of_state = [weights[3:] for weights in model.weights]
 
-    def forget(self) -> None:
-        """Begin to count refusals anew."""
+    def forget(self, share: float = 1.0) -> None:
+        """Begin to count refusals anew.
+
+        Args:
+            share: share of the buffer that landings keep from now on.
+        """
+        self._share = share
         self.refused = dict.fromkeys(REFUSALS, 0)
         self.miss = None
 
@@ -148,7 +160,8 @@ class Expander:
         kept = self._allowed("unknown motion", np.arange(len(command)), is_known)
         kept = self._allowed("map", kept, self._map.inside(com[kept]))
         distance, height = self._map.at(places[kept])
-        short = self._map.buffer + self._doubt * parents[0].depth - distance
+        buffer = self._share * self._map.buffer + self._limits.doubt * parents[0].depth
+        short = buffer - distance
         safe = np.all(short < 0, axis=1)
         self._note_miss(short[~safe], places[kept[~safe]], swinging)
         kept, near = self._allowed("landing", kept, safe), FAR_ENOUGH - distance[safe]
@@ -193,6 +206,7 @@ class Expander:
             feet=feet,
             pair=(parent.pair + 1) % len(self.controller.pairs),
             command=self.commands[children.command[index]],
+            earlier=parent.command,
             spent=spent,
             depth=parent.depth + 1,
             parent=parent,
@@ -228,10 +242,15 @@ class Expander:
         return after, before + turn, outputs[:, 3:MOTION], places, is_known
 
     def _steady(self, parents: list[Node]) -> Bool[np.ndarray, " K"]:
-        """Return whether each command from each state is near enough to the one before."""
+        """Return whether each command from each state goes on from those before steadily enough."""
         before = np.stack([node.command for node in parents]) / self._largest
-        apart = np.abs(self._shares - before[:, None]).sum(axis=2)
-        return (apart <= self._jump + 1e-9).ravel()
+        earlier = np.stack([node.earlier for node in parents]) / self._largest
+        change = self._shares - before[:, None]
+        turn = change[..., 0] - (before - earlier)[:, None, 0]
+        steady = np.abs(change).sum(axis=2) <= self._limits.jump + 1e-9
+        fastest = np.maximum(self._shares[:, 0], np.maximum(before, earlier)[:, :1])
+        steady &= (np.abs(turn) <= self._limits.sway + 1e-9) | (fastest <= SWAYS + 1e-9)
+        return steady.ravel()
 
     def _allowed(
         self, reason: Refusal, rows: Int[np.ndarray, " K"], allowed: Bool[np.ndarray, " K"]

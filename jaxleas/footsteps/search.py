@@ -39,6 +39,10 @@ class SearchSettings:
             landings just fit is put off at each contact, and never walked.
         jump: largest change of the command between footsteps, its parts over the controller's
             largest, in sum.
+        sway: largest difference of two changes of the forward speed in turn, over the controller's
+            largest: the robot sways when it goes up and down from one footstep to the next.
+        concessions: shares of the buffer that are tried in turn where a walking robot has no safe
+            command: to stop takes footsteps, too, and where those lead nobody knows.
     """
 
     horizon: int = 2
@@ -50,6 +54,8 @@ class SearchSettings:
     climbing: float = 1.0
     doubt: float = 0.0
     jump: float = float("inf")
+    sway: float = float("inf")
+    concessions: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         least = min(self.horizon, self.most_expansions, 1 if self.width is None else self.width)
@@ -87,7 +93,7 @@ class FootstepPlanner:
         self._costs = costs
         self._settings = SearchSettings() if settings is None else settings
         chosen = self._settings
-        limits = Limits(chosen.fastest, chosen.climbing, chosen.doubt, chosen.jump)
+        limits = Limits(chosen.fastest, chosen.climbing, chosen.doubt, chosen.jump, chosen.sway)
         self._expander = Expander(model, costs, limits)
         self._strides = Strides.of(model, self._expander.commands)
 
@@ -98,18 +104,27 @@ class FootstepPlanner:
             InputError: the goal is outside the map.
         """
         require_goal(goal, self._costs)
-        self._expander.forget()
         settings, start = self._settings, _start(state, self._costs)
+        self._expander.forget()
         if goal.is_met_by(state):
             return self._plan(Found("reached", start, 0.0, 0.0))
         left = WayLeft(self._expander.model, self._strides, goal)
         costs = SearchCosts(goal, left, settings.cost, settings.clearance)
+        plan = self._plan(self._found(costs, start))
+        for share in settings.concessions if state.command.any() else ():
+            if plan.footsteps:
+                break
+            self._expander.forget(share)
+            conceded = self._plan(self._found(costs, start))
+            plan = conceded if conceded.footsteps else plan
+        return plan
+
+    def _found(self, costs: SearchCosts, start: Node) -> Found:
+        settings = self._settings
         if settings.width is None:
             horizon, budget = settings.horizon, settings.most_expansions
-            return self._plan(exact_search(self._expander, costs, start, horizon, budget))
-        return self._plan(
-            beam_search(self._expander, costs, start, settings.horizon, settings.width)
-        )
+            return exact_search(self._expander, costs, start, horizon, budget)
+        return beam_search(self._expander, costs, start, settings.horizon, settings.width)
 
     def _plan(self, found: Found) -> FootstepPlan:
         footsteps: list[PlannedFootstep] = []
@@ -165,4 +180,5 @@ def _start(state: WalkingState, costs: FootCostMap) -> Node:
         feet=feet,
         pair=state.pair,
         command=state.command.astype(np.float64),
+        earlier=(state.command if state.earlier is None else state.earlier).astype(np.float64),
     )

@@ -24,6 +24,7 @@ class WalkingState:
         pair: index of the pair that swings next. It comes from measured contacts: places of feet
             tell it wrongly in 4 to 16 % of footsteps (measured on the logs of the thesis).
         command: forward and sideways speed [m/s] and turning rate [rad/s] commanded until now.
+        earlier: command before that one; None for the same.
     """
 
     com: Float[np.ndarray, "3"]
@@ -33,6 +34,7 @@ class WalkingState:
     feet: Float[np.ndarray, "E 3"]
     pair: int
     command: Float[np.ndarray, "3"]
+    earlier: Float[np.ndarray, "3"] | None = None
 
     @classmethod
     def before(cls, footsteps: Footsteps, index: int) -> "WalkingState":

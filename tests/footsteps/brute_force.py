@@ -146,9 +146,10 @@ def step(model, costs, start, command):
         if distance is None or distance <= costs.buffer:
             return None
         z = height_of(costs, x, y)
+        swing = model.controller.swing_height, model.controller.foot_radius
         if not abs(z - feet[foot][2]) <= model.controller.swing_height:
             return None
-        if _hits(costs, feet[foot], (x, y, z), model.controller.swing_height):
+        if _hits(costs, feet[foot], (x, y, z), *swing):
             return None
         near += max(0.07 - distance, 0.0)
         next_feet[foot] = [x, y, z]
@@ -156,13 +157,28 @@ def step(model, costs, start, command):
     return after, near
 
 
-def _hits(costs, lift, land, apex):
-    for part in range(1, 9):
-        share = part / 9
+def _hits(costs, lift, land, apex, radius):
+    for part in (2, 4, 6, 8, *range(10, 18)):
+        share = part / 18
         x, y, z = (a + share * (b - a) for a, b in zip(lift, land, strict=True))
-        if height_of(costs, x, y) > z + 4 * apex * share * (1 - share) - 0.01:
+        is_ball = land[2] < lift[2] and part > 9
+        ground = _under_ball(costs, x, y, radius) if is_ball else height_of(costs, x, y)
+        if ground > z + 4 * apex * share * (1 - share) - 0.01:
             return True
     return False
+
+
+def _under_ball(costs, x, y, radius):
+    """Return how high the lowest point of a ball is that is lowered onto the cells around."""
+    size, cell, highest = costs.height_map.resolution, _cell(costs, x, y), -math.inf
+    if cell is None:
+        return math.nan
+    for row, heights in enumerate(costs.height_map.heights):
+        for column, height in enumerate(heights.tolist()):
+            apart = size * math.hypot(row - cell[0], column - cell[1])
+            if apart <= radius and not math.isnan(height):
+                highest = max(highest, height + math.sqrt(radius**2 - apart**2) - radius)
+    return highest
 
 
 def _cell(costs, x, y):

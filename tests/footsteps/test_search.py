@@ -16,13 +16,15 @@ from jaxleas.footsteps import (
     require_start,
     settings_for,
 )
+from jaxleas.footsteps.framed_map import ball_heights
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError
-from tests.footsteps.brute_force import best_cost, step
+from tests.footsteps.brute_force import best_cost, distance_of, step
 from tests.footsteps.made import IDENTITY, NOMINAL, RIDE_HEIGHT, walked
 
 CELL, BUFFER = 0.02, 0.03
 GOAL = Goal(1.8, 0.1, 0.0)
+SLOW = np.array([0.4, 0.0, 0.0])
 
 
 @pytest.fixture(scope="module")
@@ -169,6 +171,71 @@ def test_a_step_above_the_swing_is_refused(models):
         state = step_state(models[1], high, state, plan.footsteps[0])
         assert state.feet[:, 2].max() == 0.0
     assert plan.refused["step height"] + plan.refused["landing"] > 0
+
+
+def test_a_foot_that_steps_down_clears_the_edge_with_its_whole_ball(models):
+    """The twin lowers the ball onto each cell; a small one steps down nearer to the edge."""
+    state = replace(standing(), com_velocity=np.array([0.4, 0.0, 0.0]), command=SLOW)
+    down, goal = costs_of(ground(rise=-0.05, at=0.59)), Goal(1.0, 0.0, 0.0)
+    found = []
+    for radius in (0.001, 0.06):
+        model = replace(models[1], controller=replace(IDENTITY, foot_radius=radius))
+        found.append(plan_footsteps(model, down, state, goal, SearchSettings(1)))
+        wanted = best_cost(model, down, state, goal, 1, 10.0)
+        assert found[-1].cost == pytest.approx(wanted, abs=1e-9)
+    small, large = found
+    assert small.footsteps[0].feet[0, 0] > 0.59 > large.footsteps[0].feet[0, 0]
+    assert large.refused["swing"] > small.refused["swing"]
+
+
+def test_a_ball_on_a_cell_touches_what_is_beside_it():
+    heights = np.full((9, 9), np.nan)
+    heights[:, :5], heights[:, 6:] = 0.1, -0.5
+    touched = ball_heights(heights, 0.01, 0.025)
+    np.testing.assert_allclose(touched[:, :5], 0.1)
+    beside = [0.1 + np.sqrt(0.025**2 - apart**2) - 0.025 for apart in (0.01, 0.02)]
+    np.testing.assert_allclose(touched[4, 5:7], beside)
+    np.testing.assert_allclose(touched[:, 7:], -0.5)  # it does not reach across the hole
+
+
+def test_commands_that_go_up_and_down_are_held_back(models):
+    """The second change in turn is limited, that of the measured start included."""
+    wide = costs_of(ground())
+    fast, slow = np.array([0.8, 0.0, 0.0]), np.array([0.24, 0.0, 0.0])
+    largest = np.array(IDENTITY.max_speeds)
+    state = replace(standing(), command=slow, earlier=fast)
+    free = plan_footsteps(models[1], wide, state, GOAL, SearchSettings(3))
+    held = plan_footsteps(models[1], wide, state, GOAL, SearchSettings(3, sway=0.9))
+    commands = {
+        name: np.array([fast, slow, *(each.command for each in plan.footsteps)]) / largest
+        for name, plan in (("free", free), ("held", held))
+    }
+    sway = {name: np.abs(np.diff(each, 2, axis=0)[:, 0]) for name, each in commands.items()}
+    assert sway["free"][0] > 1.2
+    assert (sway["held"] <= 0.9 + 1e-9).all()
+    assert len(held.footsteps) == 3
+
+
+def test_a_walking_robot_concedes_some_of_the_buffer_before_it_stops(models):
+    ledges = costs_of(ground([(-1.1, -0.48), (-0.2, 0.2), (0.56, 2.0)]), 0.16)
+    still, concessions = standing(), (0.75, 0.5, 0.25)
+    settings = SearchSettings(1, concessions=concessions)
+    walking = replace(still, com_velocity=np.array([0.2, 0.0, 0.0]), command=SLOW)
+    assert plan_footsteps(models[0], ledges, walking, GOAL, SearchSettings(1)).status == "stand"
+    assert plan_footsteps(models[0], ledges, still, GOAL, settings).status == "stand"
+    plan = plan_footsteps(models[0], ledges, walking, GOAL, settings)
+    (first,) = plan.footsteps
+    swung = list(IDENTITY.pairs[first.pair])
+    kept = [distance_of(ledges, x, y) or 0.0 for x, y in first.feet[swung, :2]]
+    share = min(kept) / ledges.buffer
+    assert 0.5 < share <= 1.0
+    for less in concessions:  # the first share by which there is a plan
+        alone = plan_footsteps(
+            models[0], ledges, walking, GOAL, SearchSettings(1, concessions=(less,))
+        )
+        if alone.footsteps:
+            np.testing.assert_array_equal(alone.command, plan.command)
+            break
 
 
 def test_where_no_command_is_safe_the_robot_stands_and_says_why(models):
