@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.footsteps.expansion import Children, Expander, Node
+from jaxleas.footsteps.expansion import Expander
 from jaxleas.footsteps.features import wrapped
 from jaxleas.footsteps.search_costs import Found, SearchCosts, StepCosts
+from jaxleas.footsteps.search_states import Children, Node
 
 MERGED_CELL, MERGED_YAW = 0.02, float(np.radians(2.0))
 """States of one command whose poses are in one cell count as one [m, rad]."""

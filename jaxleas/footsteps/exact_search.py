@@ -6,9 +6,10 @@ import itertools
 import numpy as np
 from jaxtyping import Bool, Float
 
-from jaxleas.footsteps.expansion import Children, Expander, Node
+from jaxleas.footsteps.expansion import Expander
 from jaxleas.footsteps.plan import Status
 from jaxleas.footsteps.search_costs import Found, SearchCosts
+from jaxleas.footsteps.search_states import Children, Node
 
 TOGETHER = 64
 """Open states that are expanded together: one prediction for all commands of all of them."""

@@ -12,11 +12,12 @@ import numpy as np
 from jaxleas.footsteps.beam import beam_search
 from jaxleas.footsteps.cost_map import FootCostMap
 from jaxleas.footsteps.exact_search import exact_search
-from jaxleas.footsteps.expansion import Expander, Limits, Node
+from jaxleas.footsteps.expansion import Expander, Limits
 from jaxleas.footsteps.features import turned
 from jaxleas.footsteps.model import MotionModel
 from jaxleas.footsteps.plan import FootstepPlan, PlannedFootstep
 from jaxleas.footsteps.search_costs import Cost, Found, SearchCosts
+from jaxleas.footsteps.search_states import Node
 from jaxleas.footsteps.walking_state import Goal, WalkingState, require_goal
 from jaxleas.footsteps.way_left import Strides, WayLeft
 from jaxleas.types import InputError

@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.footsteps.expansion import Children, Node
 from jaxleas.footsteps.plan import Status
+from jaxleas.footsteps.search_states import Children, Node
 from jaxleas.footsteps.walking_state import Goal
 from jaxleas.footsteps.way_left import WayLeft
 
