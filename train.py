@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Literal
 
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.configuration import require_own_name
+from jaxleas.runs import interrupts_deferred
 
 # JAX takes a second to import: not before the command line is parsed.
 if TYPE_CHECKING:
@@ -75,9 +76,10 @@ def _train_together(
 def _open(
     given: argparse.Namespace, overrides: Sequence[str], arguments: Sequence[str]
 ) -> "tuple[RunConfig, Task, Devices, RunFolder]":
-    from jaxleas.configuration import to_yaml
-    from jaxleas.runs import RunFolder, require_watchers
-    from jaxleas.training import load_run_config, make_task, pinned, rehearse
+    with interrupts_deferred():
+        from jaxleas.configuration import to_yaml
+        from jaxleas.runs import RunFolder, require_watchers
+        from jaxleas.training import load_run_config, make_task, pinned, rehearse
 
     if given.resume:
         found = RunFolder.open(given.resume, needs_checkpoint=False)

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.cli_options import add_options, arguments_of
+from jaxleas.runs import interrupts_deferred
 
 # Command -> (the room's module, its function, its purpose).
 COMMANDS = {
@@ -155,7 +156,8 @@ def _command(words: str) -> str | None:
 
 def _call(name: str, arguments: Sequence[str]) -> None:
     module, function_name, _ = COMMANDS[name]
-    function = getattr(import_module(module), function_name)
+    with interrupts_deferred():
+        function = getattr(import_module(module), function_name)
     parser = _Parser(
         prog=f"jaxleas {name}",
         allow_abbrev=False,  # an abbreviation may mean something else next year

@@ -5,6 +5,7 @@ from .folder import POLICY_FILE as POLICY_FILE
 from .folder import RunFolder as RunFolder
 from .folder import policy_file as policy_file
 from .interruption import Interruption as Interruption
+from .interruption import interrupts_deferred as interrupts_deferred
 from .metrics import MetricsLog as MetricsLog
 from .metrics import read_metrics as read_metrics
 from .progress import Progress as Progress

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jaxleas.configuration import Allow
+from jaxleas.runs import interrupts_deferred
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
 from jaxleas.viewer.refusals import require_drive, require_moving
@@ -176,9 +177,10 @@ def _play_back(
 
 def _load_robots(policies: Sequence[Path], allow: Allow) -> "list[NamedRobot]":
     """Return name, environment and policy of each robot."""
-    from jaxleas.envs.steering import SteeringEnv
-    from jaxleas.guide import load_policy
-    from jaxleas.xla import keep_compiled_programs
+    with interrupts_deferred():
+        from jaxleas.envs.steering import SteeringEnv
+        from jaxleas.guide import load_policy
+        from jaxleas.xla import keep_compiled_programs
 
     keep_compiled_programs()
     loaded = [load_policy(each, allow) for each in policies]
@@ -193,11 +195,12 @@ def _drive(
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
 ) -> "Drive":
-    from jaxleas.guide import choose_start, require_start
-    from jaxleas.terrain import make_atlas
-    from jaxleas.viewer.drive import Drive
-    from jaxleas.viewer.driven_robot import DrivenRobot
-    from jaxleas.viewer.ground import look_near
+    with interrupts_deferred():
+        from jaxleas.guide import choose_start, require_start
+        from jaxleas.terrain import make_atlas
+        from jaxleas.viewer.drive import Drive
+        from jaxleas.viewer.driven_robot import DrivenRobot
+        from jaxleas.viewer.ground import look_near
 
     first = robots[0][1]
     place = choose_start(first, terrain) if start is None else require_start(first, terrain, start)

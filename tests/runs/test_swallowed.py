@@ -5,11 +5,12 @@ import signal
 import sys
 import time
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 from jaxleas.cli_guard import INTERRUPTED, run_guarded
-from jaxleas.runs.interruption import Interruption
+from jaxleas.runs.interruption import Interruption, interrupts_deferred
 
 LONG = 10.0  # [s]
 
@@ -138,3 +139,37 @@ def test_other_exceptions_that_python_ignores_are_reported_as_before(monkeypatch
 
     assert run_guarded(command) == 0
     assert seen == [ZeroDivisionError]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_deferred_signal_acts_after_the_import(number):
+    """A signal during an import in C can abort the process: it acts when that is complete."""
+    seen, done = [], []
+
+    def note(caught: int, frame: object) -> None:
+        seen.append((caught, list(done)))
+
+    before = signal.signal(number, note)
+    try:
+        with interrupts_deferred():
+            signal.raise_signal(number)
+            for _ in range(10):
+                pass
+            done.append("imported")
+        assert seen == [(number, ["imported"])]
+        with interrupts_deferred():
+            pass
+        assert len(seen) == 1
+        assert signal.getsignal(number) is note
+    finally:
+        signal.signal(number, before)
+
+
+def test_interrupts_are_deferred_in_the_main_thread_alone():
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(_passed).result()
+
+
+def _passed() -> bool:
+    with interrupts_deferred():
+        return True
