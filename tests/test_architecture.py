@@ -1,6 +1,7 @@
 """The order of the rooms, as docs and house rules state it: each imports only from those above."""
 
 import ast
+import functools
 import graphlib
 import importlib
 import importlib.util
@@ -39,13 +40,23 @@ def room_of(path: Path) -> str:
     return path.relative_to(ROOT).parts[0].removesuffix(".py")
 
 
+@functools.cache
+def imports_of(source: str) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Return the imports of a file, at its top or inside a function; parsed once."""
+    return tuple(
+        node
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    )
+
+
 def imported_rooms(source: str, package: list[str]) -> Iterator[str]:
     """Yield the rooms that a file imports, at its top or inside a function, however spelt."""
-    for node in ast.walk(ast.parse(source)):
+    for node in imports_of(source):
         names: list[str] = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = package[: len(package) - node.level + 1] if node.level else []
             module = ".".join([*base, *([node.module] if node.module else [])])
             names = [f"{module}.{alias.name}" for alias in node.names]
@@ -75,10 +86,10 @@ def past_the_face(source: str, package: list[str]) -> list[str]:
 
 def imported_modules(source: str, package: list[str]) -> Iterator[str]:
     """Yield the modules that a file imports or imports names from, however spelt."""
-    for node in ast.walk(ast.parse(source)):
+    for node in imports_of(source):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = package[: len(package) - node.level + 1] if node.level else []
             yield ".".join([*base, *([node.module] if node.module else [])])
 
@@ -107,6 +118,7 @@ def test_an_import_past_the_face_is_found(source: str, package: str, found: list
     assert past_the_face(source, package.split(".")) == found
 
 
+@functools.cache
 def face_of(module: str) -> dict[str, str]:
     """Return the names of a room's face, each with the module that defines it."""
     stub = ROOT.parent / Path(*module.split(".")) / "__init__.pyi"
@@ -249,7 +261,7 @@ def test_no_library_imports_a_command():
         f"{path.relative_to(ROOT)} imports {module}"
         for path in FILES
         if path.stem.rpartition("_")[2] not in COMMAND_FILES
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in imports_of(path.read_text(encoding="utf-8"))
         if isinstance(node, ast.ImportFrom) and (module := node.module or "")
         if module.rpartition(".")[2].rpartition("_")[2] in COMMAND_FILES
     ]
