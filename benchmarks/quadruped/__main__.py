@@ -2,8 +2,9 @@
 
 python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
 
-Parts: stairs, gaps, noisy, stairs_blind, gaps_blind, and models, which needs --scores of `jaxleas
-gait fit`. Each part replaces its own figures in benchmarks/results/quadruped.json.
+Parts: stairs, gaps, noisy, stairs_blind, gaps_blind, plans (times, from starts for tuning), and
+models, which needs --scores of `jaxleas gait fit`. Each part replaces its own figures in
+benchmarks/results/quadruped.json.
 """
 
 import argparse
@@ -14,6 +15,7 @@ from pathlib import Path
 from benchmarks.contacts.rows import Row
 from benchmarks.measurements import read_measurements, this_machine, write_measurements
 from benchmarks.quadruped.models import model_rows
+from benchmarks.quadruped.plans import plan_rows
 from benchmarks.quadruped.walks import Crossed, crossed, crossed_blind, worst_unsafe
 from jaxleas.cli_guard import run_guarded
 from jaxleas.crossing import make_course
@@ -84,6 +86,10 @@ def _gaps_blind(given: argparse.Namespace) -> Iterator[Row]:
         yield _success(f"gaps_blind_success_{name}", [one], None)
 
 
+def _plans(given: argparse.Namespace) -> Iterator[Row]:
+    yield from plan_rows((*STAIRS, *GAPS), given.starts)
+
+
 def _models(given: argparse.Namespace) -> Iterator[Row]:
     if given.scores is None:
         raise InputError("models: give --scores, the scores.json of jaxleas gait fit")
@@ -120,6 +126,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "noisy": _noisy,
     "stairs_blind": _stairs_blind,
     "gaps_blind": _gaps_blind,
+    "plans": _plans,
     "models": _models,
 }
 

@@ -1,6 +1,6 @@
 """Robots that cross a course, all starts at once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from jaxleas.crossing import (
     Course,
     Crossing,
     MapErrors,
+    Planner,
     PlanningCommander,
     Tally,
     WalkSettings,
@@ -21,7 +22,7 @@ from jaxleas.crossing import (
 )
 from jaxleas.footsteps import FootCostMap, FootstepPlanner, buffer_of, shipped_model
 from jaxleas.physics import BodyState, load_body, make_physics
-from jaxleas.terrain import SceneEdges, rasterise
+from jaxleas.terrain import HeightMap, SceneEdges, rasterise
 
 CELL, COARSE = 0.01, 0.02
 """Edge of a cell of the true map, and of the noisy one [m]."""
@@ -56,7 +57,23 @@ class Crossed:
         return ", ".join(f"{names.count(name)} {name}" for name in sorted(set(names)))
 
 
-def crossed(course: Course, count: int, seed: int, noisy: bool = False) -> Crossed:
+def planner_on(course: Course, settings: WalkSettings) -> FootstepPlanner:
+    """Return a planner on the true map of a course."""
+    return _planner(rasterise(course.scene, CELL, 0.5), settings)
+
+
+def _planner(height_map: HeightMap, settings: WalkSettings) -> FootstepPlanner:
+    model = shipped_model(find_controller(CONTROLLER, load_body(BODY)).identity)
+    return FootstepPlanner(model, FootCostMap.of(height_map, buffer_of(model)), settings.search)
+
+
+def crossed(
+    course: Course,
+    count: int,
+    seed: int,
+    noisy: bool = False,
+    watched: Callable[[FootstepPlanner], Planner] = lambda planner: planner,
+) -> Crossed:
     """Return what became of robots that plan at each contact.
 
     Args:
@@ -64,17 +81,14 @@ def crossed(course: Course, count: int, seed: int, noisy: bool = False) -> Cross
         count: number of starts.
         seed: seed of the starts, and of the errors of each robot's map.
         noisy: whether each robot's map is noisy and shifted.
+        watched: what asks the planner in a robot's place.
     """
     settings = WalkSettings()
     walk, start = _walk(course, course.starts(count, seed))
-    model = shipped_model(walk.controller.identity)
     true = rasterise(course.scene, COARSE if noisy else CELL, 0.5)
     errors = [MapErrors(NOISE, SHIFT, seed + robot) for robot in range(count)]
     errors = errors if noisy else [MapErrors()]  # the true map serves all robots
-    planners = [
-        FootstepPlanner(model, FootCostMap.of(each.of(true), buffer_of(model)), settings.search)
-        for each in errors
-    ]
+    planners = [watched(_planner(each.of(true), settings)) for each in errors]
     commanders = [
         PlanningCommander(planners[robot % len(planners)], course.goals) for robot in range(count)
     ]

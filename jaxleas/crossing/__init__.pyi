@@ -1,6 +1,7 @@
 from .commanders import BlindCommander as BlindCommander
 from .commanders import Commander as Commander
 from .commanders import Decision as Decision
+from .commanders import Planner as Planner
 from .commanders import PlanningCommander as PlanningCommander
 from .courses import COURSES as COURSES
 from .courses import Course as Course

@@ -124,6 +124,16 @@ def test_nobody_starts_over_the_void(env):
     assert np.all(np.abs(position[:, 2]) < 2.0)
 
 
+def test_goals_of_links_to_cross_are_places_to_stand_at(env):
+    """Half of the goal area is void: such goals are drawn for links alone that nobody can cross."""
+    world = world_of(height_map(lambda x, y: np.where(x < 3.0, 0.0, np.nan)))
+    for crossable in (True, False):
+        asked = world.replace(crossable=np.array([crossable]))
+        state, _ = take(draw_pool(env, asked, jax.random.key(13), 4096), jax.random.key(14), 4000)
+        beyond = np.asarray(state.plan.goals)[:, 0, 0] > 3.2
+        assert beyond.any() != crossable
+
+
 KINDS = [*LinkShares.model_fields]
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from jaxleas.evaluation.starts import crossing_direction, draw_starts, make_grounds
 from jaxleas.evaluation.suites import SUITES, Cell, make_suite
+from jaxleas.terrain.polygons import box_faces
 from jaxleas.types import InputError
 from tests.envs.compiled import condition, local_heights
 from tests.evaluation.conftest import flat_scene
@@ -94,3 +95,15 @@ def test_an_area_without_a_valid_start_is_refused(env):
     cell = Cell("nowhere", 0.0, (scene,), 3)
     with pytest.raises(InputError, match=r"no valid start in the area .*'nowhere'"):
         draw_starts(env, make_grounds([cell]), cell, 0)
+
+
+def test_starts_that_would_be_invalid_at_once_are_drawn_again(env):
+    """A wall stands in the start area: beside it the trunk would touch it."""
+    flat = flat_scene()
+    corners = np.array([[1.4, -0.7], [1.5, -0.7], [1.5, 0.7], [1.4, 0.7]])
+    wall = replace(flat.scene, obstacles=box_faces(corners, 0.0, 1.5))
+    cell = Cell("wall", 0.0, (replace(flat, scene=wall),), 100)
+    grounds = make_grounds([cell])
+    starts = draw_starts(env, grounds, cell, 0)
+    heights = local_heights(env, grounds.atlas, starts.map_index, starts.motion)
+    assert np.all(np.asarray(condition(env, heights, starts.motion)) >= 0.0)
