@@ -13,6 +13,8 @@ from jaxleas.footsteps.search_states import Children, Node
 
 TOGETHER = 64
 """Open states that are expanded together: one prediction for all commands of all of them."""
+Open = tuple[float, int, int, float, Children, int]
+"""Bound, depth (deep ones first), order, cost so far, and the child that is to become a state."""
 
 
 def exact_search(
@@ -36,7 +38,7 @@ class _Search:
     def __init__(self, expander: Expander, costs: SearchCosts, horizon: int, budget: int) -> None:
         self._expander, self._costs = expander, costs
         self._horizon, self._budget = horizon, budget
-        self._heap: list[tuple[float, int, int, float, Children, int]] = []
+        self._heap: list[Open] = []
         self._order = itertools.count()
         self._found = Found()
 
@@ -54,15 +56,28 @@ class _Search:
     def _next(self) -> list[Node]:
         """Return the open states to expand together: the cheapest, of one depth."""
         room = self._budget - self._found.expansions
-        nodes: list[Node] = []
-        while self._heap and len(nodes) < min(TOGETHER, room):
+        taken: list[Open] = []
+        while self._heap and len(taken) < min(TOGETHER, room):
             key, depth = self._heap[0][:2]
-            if key >= self._found.cost or (nodes and -depth != nodes[0].depth):
+            if key >= self._found.cost or (taken and depth != taken[0][1]):
                 break
-            _, _, _, spent, children, index = heapq.heappop(self._heap)
-            if self._expander.swings_clear(children, np.array([index]))[0]:
-                nodes.append(self._expander.child(children, index, spent))
-        return nodes
+            taken.append(heapq.heappop(self._heap))
+        return self._made(taken)
+
+    def _made(self, taken: list[Open]) -> list[Node]:
+        """Return the states of those whose swings are clear, which is asked of many at once."""
+        siblings: dict[int, list[int]] = {}
+        for number, (_, _, _, _, children, _) in enumerate(taken):
+            siblings.setdefault(id(children), []).append(number)
+        clear = np.zeros(len(taken), bool)
+        for numbers in siblings.values():
+            rows = np.array([taken[each][5] for each in numbers])
+            clear[numbers] = self._expander.swings_clear(taken[numbers[0]][4], rows)
+        return [
+            self._expander.child(children, index, spent)
+            for (_, _, _, spent, children, index), is_clear in zip(taken, clear, strict=True)
+            if is_clear
+        ]
 
     def _expand(self, nodes: list[Node]) -> None:
         """Try all commands in states of one depth."""
