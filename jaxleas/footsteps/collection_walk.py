@@ -115,7 +115,7 @@ def walk_runs(
             cause = FALLS[causes[robot]]
             fell.append(RunFell(run.number, str(run), (index + 1) * TICK, cause))
         down |= causes != UPRIGHT
-        if down.any():  # whoever lies on the ground is put aside: its numbers may diverge
+        if down.any():  # a fallen robot is put aside: its numbers may diverge
             walking = replace(walking, state=walking.state.replaced(down, start))
         tick()
     return log, fell

@@ -43,7 +43,7 @@ class SearchSettings:
         sway: largest difference of two changes of the forward speed in turn, over the controller's
             largest: the robot sways when it goes up and down from one footstep to the next.
         concessions: shares of the buffer that are tried in turn where a walking robot has no safe
-            command: to stop takes footsteps, too, and where those lead nobody knows.
+            command; stopping takes footsteps, too, whose landings are not planned.
     """
 
     horizon: int = 2

@@ -1,4 +1,4 @@
-"""What a commander is told at each contact: the command until then, and the one before."""
+"""What a commander is given at each contact: the command until then, and the one before."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests.terrain.test_scene_edges import rectangle
 
 
 class Alternating:
-    """Commands one speed after the other, and keeps what it was told."""
+    """Commands one speed after the other, and keeps what it was given."""
 
     def __init__(self):
         self.told = []
