@@ -20,7 +20,7 @@ from jaxleas.crossing import (
     tally,
     together,
 )
-from jaxleas.footsteps import FootCostMap, FootstepPlanner, buffer_of, shipped_model
+from jaxleas.footsteps import FootCostMap, FootstepPlanner, MotionModel, buffer_of, shipped_model
 from jaxleas.physics import BodyState, load_body, make_physics
 from jaxleas.terrain import HeightMap, SceneEdges, rasterise
 
@@ -59,11 +59,11 @@ class Crossed:
 
 def planner_on(course: Course, settings: WalkSettings) -> FootstepPlanner:
     """Return a planner on the true map of a course."""
-    return _planner(rasterise(course.scene, CELL, 0.5), settings)
-
-
-def _planner(height_map: HeightMap, settings: WalkSettings) -> FootstepPlanner:
     model = shipped_model(find_controller(CONTROLLER, load_body(BODY)).identity)
+    return _planner(model, rasterise(course.scene, CELL, 0.5), settings)
+
+
+def _planner(model: MotionModel, height_map: HeightMap, settings: WalkSettings) -> FootstepPlanner:
     return FootstepPlanner(model, FootCostMap.of(height_map, buffer_of(model)), settings.search)
 
 
@@ -85,10 +85,11 @@ def crossed(
     """
     settings = WalkSettings()
     walk, start = _walk(course, course.starts(count, seed))
+    model = shipped_model(walk.controller.identity)
     true = rasterise(course.scene, COARSE if noisy else CELL, 0.5)
     errors = [MapErrors(NOISE, SHIFT, seed + robot) for robot in range(count)]
     errors = errors if noisy else [MapErrors()]  # the true map serves all robots
-    planners = [watched(_planner(each.of(true), settings)) for each in errors]
+    planners = [watched(_planner(model, each.of(true), settings)) for each in errors]
     commanders = [
         PlanningCommander(planners[robot % len(planners)], course.goals) for robot in range(count)
     ]
