@@ -1,9 +1,10 @@
-"""Measure a quadruped over stairs and gaps, planned at each contact and blind.
+"""Measure a quadruped over stairs, gaps and waypoints, planned at each contact and blind.
 
 python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
 
-Parts: stairs, gaps, noisy, stairs_blind, gaps_blind, plans (times, from starts for tuning), and
-models, which needs --scores of `jaxleas gait fit`. Each part replaces its own figures in
+Parts: stairs, gaps, noisy, waypoints, stairs_blind, gaps_blind, waypoints_blind, plans (times, from
+starts for tuning), models, which needs --scores of `jaxleas gait fit`, and public, which needs the
+folder of the public footsteps as --public. Each part replaces its own figures in
 benchmarks/results/quadruped.json.
 """
 
@@ -16,6 +17,7 @@ from benchmarks.contacts.rows import Row
 from benchmarks.measurements import read_measurements, this_machine, write_measurements
 from benchmarks.quadruped.models import model_rows
 from benchmarks.quadruped.plans import plan_rows
+from benchmarks.quadruped.public import public_rows
 from benchmarks.quadruped.walks import Crossed, crossed, crossed_blind, worst_unsafe
 from jaxleas.cli_guard import run_guarded
 from jaxleas.crossing import make_course
@@ -25,6 +27,7 @@ from jaxleas.types import InputError
 OUT = Path(__file__).resolve().parents[2] / "benchmarks/results/quadruped.json"
 STAIRS = ("stairs_1", "stairs_2", "stairs_3")
 GAPS = ("gaps_1", "gaps_2", "gaps_12cm", "gaps_16cm")
+WAYPOINTS = "waypoints"
 BLIND_GAPS = ("gaps_16cm", "gaps_20cm")
 BLIND_STAIRS_SPEED = 0.4
 BLIND_SPEEDS = (0.2, 0.4, 0.6, 0.8, 1.0)
@@ -67,6 +70,18 @@ def _noisy(given: argparse.Namespace) -> Iterator[Row]:
     yield _success("noisy_success", found, NOISY)
 
 
+def _waypoints(given: argparse.Namespace) -> Iterator[Row]:
+    found = _crossed(given, [WAYPOINTS])
+    yield _success("waypoints_success", found, SUCCESS)
+    yield Row("waypoints_unsafe_worst", _starts(found), [worst_unsafe(found)])
+
+
+def _waypoints_blind(given: argparse.Namespace) -> Iterator[Row]:
+    found = [_told(WAYPOINTS, crossed_blind(make_course(WAYPOINTS), *_count(given), BLIND_SPEEDS))]
+    yield _success("waypoints_blind_success", found, None)
+    yield Row("waypoints_blind_unsafe_worst", _starts(found), [worst_unsafe(found)])
+
+
 def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
     speeds = (BLIND_STAIRS_SPEED,)
     found = [
@@ -94,6 +109,12 @@ def _models(given: argparse.Namespace) -> Iterator[Row]:
     if given.scores is None:
         raise InputError("models: give --scores, the scores.json of jaxleas gait fit")
     yield from model_rows(given.scores)
+
+
+def _public(given: argparse.Namespace) -> Iterator[Row]:
+    if given.public is None:
+        raise InputError("public: give --public, the folder that holds sim_footsteps.npz")
+    yield from public_rows(given.public)
 
 
 def _crossed(given: argparse.Namespace, names: Sequence[str]) -> list[Crossed]:
@@ -124,10 +145,13 @@ PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "stairs": _stairs,
     "gaps": _gaps,
     "noisy": _noisy,
+    "waypoints": _waypoints,
     "stairs_blind": _stairs_blind,
     "gaps_blind": _gaps_blind,
+    "waypoints_blind": _waypoints_blind,
     "plans": _plans,
     "models": _models,
+    "public": _public,
 }
 
 
@@ -138,6 +162,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--starts", type=int, default=10, help="number of starts")
     add("--held-out", action="store_true", help="starts for tuning; nothing is written")
     add("--scores", type=Path, help="scores.json of jaxleas gait fit")
+    add("--public", type=Path, help="folder of the public footsteps of 2023")
     add("--out", type=Path, default=OUT)
     return parser
 

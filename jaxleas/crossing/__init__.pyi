@@ -3,8 +3,8 @@ from .commanders import Commander as Commander
 from .commanders import Decision as Decision
 from .commanders import Planner as Planner
 from .commanders import PlanningCommander as PlanningCommander
+from .course import Course as Course
 from .courses import COURSES as COURSES
-from .courses import Course as Course
 from .courses import make_course as make_course
 from .crossing import Crossing as Crossing
 from .crossing import Outcome as Outcome

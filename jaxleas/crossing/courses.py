@@ -1,13 +1,12 @@
 """Courses that a quadruped crosses: stairs, gaps, stepping stones (Taouil's thesis, chapter 5)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from jaxtyping import Float
 
-from jaxleas.footsteps import Goal
+from jaxleas.crossing.course import Course, level_scene, stop_at
+from jaxleas.crossing.obstacle_course import obstacle_course
 from jaxleas.terrain import Area, Scene
 from jaxleas.types import InputError
 
@@ -21,35 +20,6 @@ BLOCK_HEIGHT = 0.18
 """Height of blocks above the ground between them [m] (thesis, section 5.2)."""
 STEPS = 12
 """Number of steps up, and down (thesis, section 5.2)."""
-AWAY = (0.10, 0.05, float(np.radians(5.0)))
-"""How far a start may be from its place: along, across [m], heading [rad]."""
-Start = tuple[float, float, float]
-"""x, y [m], heading [rad]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Course:
-    """Terrain with a way across it.
-
-    Attributes:
-        name: name of the course.
-        scene: terrain.
-        goals: poses to reach in turn.
-    """
-
-    name: str
-    scene: Scene
-    goals: tuple[Goal, ...]
-
-    def starts(self, count: int, seed: int) -> list[Start]:
-        """Return starts around the origin, drawn evenly within `AWAY`.
-
-        Args:
-            count: number of starts.
-            seed: seed of the draws.
-        """
-        drawn = np.random.default_rng(seed).uniform(-1.0, 1.0, (count, 3)) * np.array(AWAY)
-        return [(float(x), float(y), float(yaw)) for x, y, yaw in drawn]
 
 
 def stairs(name: str, riser: float, tread: float) -> Course:
@@ -70,7 +40,7 @@ def stairs(name: str, riser: float, tread: float) -> Course:
         flights[f"down_{step}"] = ((begin, begin + tread), height)
     foot = top[1] + tread * (STEPS - 1)
     flights["goal"] = ((foot, foot + 2.0 * BEHIND), 0.0)
-    return Course(name, _strips(flights), (_goal(foot + BEHIND),))
+    return Course(name, _strips(flights), stop_at(foot + BEHIND))
 
 
 LANDING = 1.0
@@ -92,7 +62,7 @@ def gaps(name: str, widths: Sequence[float], seed: int) -> Course:
         blocks[f"block_{number}"] = ((begin, begin + length), 0.0)
         begin += length
     blocks["ground"] = ((-BEHIND, begin), -BLOCK_HEIGHT)
-    return Course(name, _strips(blocks), (_goal(begin - BEHIND),))
+    return Course(name, _strips(blocks), stop_at(begin - BEHIND))
 
 
 BLOCK_LENGTHS = (0.6, 1.0)
@@ -107,7 +77,9 @@ def stones(name: str, seed: int) -> Course:
     """
     rng = np.random.default_rng(seed)
     far = RUN_UP + STONES_LONG
-    surfaces = {"start": _rectangle((-BEHIND, RUN_UP, -HALF_WIDTH, HALF_WIDTH), 0.0)}
+    surfaces: dict[str, tuple[Area, float]] = {
+        "start": ((-BEHIND, RUN_UP, -HALF_WIDTH, HALF_WIDTH), 0.0)
+    }
     begin = RUN_UP + rng.uniform(*STONE_GAPS)
     while begin < far:
         length = rng.uniform(*STONE_SIZES)
@@ -115,14 +87,14 @@ def stones(name: str, seed: int) -> Course:
         while across < HALF_WIDTH:
             width = rng.uniform(*STONE_SIZES)
             area = (begin, begin + length, across, across + width)
-            surfaces[f"stone_{len(surfaces)}"] = _rectangle(area, 0.0)
+            surfaces[f"stone_{len(surfaces)}"] = (area, 0.0)
             across += width + rng.uniform(*STONE_GAPS)
         begin += length + rng.uniform(*STONE_GAPS)
     end = begin + 2.0 * BEHIND
-    surfaces["goal"] = _rectangle((begin, end, -HALF_WIDTH, HALF_WIDTH), 0.0)
+    surfaces["goal"] = ((begin, end, -HALF_WIDTH, HALF_WIDTH), 0.0)
     low = (-BEHIND, end, -HALF_WIDTH - STONE_SIZES[1], HALF_WIDTH + STONE_SIZES[1])
-    surfaces["ground"] = _rectangle(low, -BLOCK_HEIGHT)
-    return Course(name, Scene(surfaces), (_goal(begin + BEHIND),))
+    surfaces["ground"] = (low, -BLOCK_HEIGHT)
+    return Course(name, level_scene(surfaces), stop_at(begin + BEHIND))
 
 
 STONES_LONG, STONE_SIZES, STONE_GAPS = 3.0, (0.30, 0.40), (0.04, 0.08)
@@ -141,9 +113,11 @@ COURSES: Mapping[str, Callable[[], Course]] = MappingProxyType(
         "gaps_16cm": lambda: gaps("gaps_16cm", (0.16,) * 5, seed=4),
         "gaps_20cm": lambda: gaps("gaps_20cm", (0.20,) * 5, seed=5),
         "stones": lambda: stones("stones", seed=6),
+        "waypoints": lambda: obstacle_course("waypoints"),
     }
 )
-"""Stairs are those of the thesis's scenarios 1.1 to 1.3. Of gaps it gives widths, not places."""
+"""Stairs are those of the thesis's scenarios 1.1 to 1.3. Of gaps it gives widths, not places,
+and of its waypoint course a picture alone."""
 
 
 def make_course(name: str) -> Course:
@@ -159,23 +133,9 @@ def make_course(name: str) -> Course:
 
 def _strips(strips: Mapping[str, tuple[tuple[float, float], float]]) -> Scene:
     """Return level strips across the course, each from one x to another at a height."""
-    return Scene(
+    return level_scene(
         {
-            name: _rectangle((begin, end, -HALF_WIDTH, HALF_WIDTH), height)
+            name: ((begin, end, -HALF_WIDTH, HALF_WIDTH), height)
             for name, ((begin, end), height) in strips.items()
         }
     )
-
-
-def _rectangle(area: Area, height: float) -> Float[np.ndarray, "4 3"]:
-    x_min, x_max, y_min, y_max = area
-    flat = [[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]]
-    return np.column_stack([flat, np.full(4, height)])
-
-
-def _goal(x: float, y: float = 0.0) -> Goal:
-    return Goal(x, y, 0.0, speed=STOPS)
-
-
-STOPS = 0.25
-"""Speed from which a robot stops within a few centimetres [m/s]."""

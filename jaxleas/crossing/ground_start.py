@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jaxleas.controllers import Walk
-from jaxleas.crossing.courses import Start
+from jaxleas.crossing.course import Start
 from jaxleas.footsteps import WalkingState, turned
 from jaxleas.physics import Body, BodyState, make_physics, standing
 from jaxleas.terrain import Scene, ground_height

@@ -1,6 +1,7 @@
 """Another run-up for a robot that gets no nearer: its feet then meet the edges ahead otherwise."""
 
 import numpy as np
+from jaxtyping import Float
 
 from jaxleas.footsteps import Goal, WalkingState, turned
 
@@ -49,8 +50,16 @@ class RunUp:
             self.end()
         elif self._back is None and self._waits > PATIENCE and apart > NEAR_GOAL:
             length = self._rng.uniform(*RUN_UPS)
-            behind = turned(np.array([-length, 0.0]), np.asarray(state.yaw)) + state.com[:2]
-            x, y = map(float, behind)
+            x, y = map(float, state.com[:2] + length * _away(state, goal))
             self._back = Goal(x, y, goal.yaw, 0.5 * RUN_UPS[0], REST_ANGLE)
             self._waits = 0
         return goal if self._back is None else self._back
+
+
+def _away(state: WalkingState, goal: Goal) -> Float[np.ndarray, "2"]:
+    """Return which way the robot backs off: behind it, or to the side if the goal is beside it."""
+    yaw = np.asarray(state.yaw)
+    forward, left = turned(np.array([goal.x, goal.y]) - state.com[:2], -yaw)
+    beside = abs(left) > abs(forward)
+    back = np.array([0.0, -np.sign(left)]) if beside else np.array([-1.0, 0.0])
+    return turned(back, yaw)

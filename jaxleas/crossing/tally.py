@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from jaxleas.crossing.crossing import Crossing
-from jaxleas.footsteps import UNSAFE
+from jaxleas.footsteps import UNSAFE, wrapped
 from jaxleas.terrain import SceneEdges
 from jaxleas.types import ControllerIdentity
 
@@ -23,7 +23,8 @@ class Tally:
         footsteps: number of footsteps.
         wrong_pairs: number in which another pair swung than was expected.
         unclear: number in which not just one pair swung.
-        errors: distances of landings from where they were planned [m].
+        landing_errors: distances of landings from where they were planned, along x and y [m].
+        pose_errors: those of the centre of mass, x and y [m], and of the heading [rad].
         seconds: times of decisions [s].
     """
 
@@ -34,7 +35,8 @@ class Tally:
     footsteps: int
     wrong_pairs: int
     unclear: int
-    errors: Float[np.ndarray, " L"]
+    landing_errors: Float[np.ndarray, "L 2"]
+    pose_errors: Float[np.ndarray, "P 3"]
     seconds: Float[np.ndarray, " D"]
 
     @property
@@ -46,6 +48,11 @@ class Tally:
     def wrong_share(self) -> float:
         """Footsteps in which another pair swung than was expected [%]."""
         return 100.0 * self.wrong_pairs / max(self.footsteps, 1)
+
+    @property
+    def errors(self) -> Float[np.ndarray, " L"]:
+        """Distances of landings from where they were planned [m]."""
+        return np.hypot(*self.landing_errors.T)
 
     def in_words(self) -> str:
         """Return the counts as lines of text."""
@@ -64,12 +71,22 @@ class Tally:
             lines.append(
                 f"landings from their plan: median {median:.1f} cm, 95 % within {most:.1f} cm"
             )
+            lines.append(self._means())
         if len(self.seconds):
             median, most = 1000.0 * np.quantile(self.seconds, (0.5, 0.99))
             lines.append(
                 f"{len(self.seconds)} decisions: median {median:.1f} ms, 99 % within {most:.1f} ms"
             )
         return "\n".join(lines)
+
+    def _means(self) -> str:
+        """Return the mean absolute errors, as tables 5.10 and 5.11 of Taouil's thesis have them."""
+        x, y, yaw = self.pose_errors.mean(axis=0)
+        foot_x, foot_y = 100.0 * self.landing_errors.mean(axis=0)
+        return (
+            f"mean errors: centre of mass {100 * x:.2f} cm in x, {100 * y:.2f} cm in y, heading"
+            f" {1000 * yaw:.1f} mrad; landings {foot_x:.2f} cm in x, {foot_y:.2f} cm in y"
+        )
 
 
 def tally(crossing: Crossing, edges: SceneEdges, controller: ControllerIdentity) -> Tally:
@@ -84,7 +101,8 @@ def tally(crossing: Crossing, edges: SceneEdges, controller: ControllerIdentity)
     """
     feet = len(controller.feet)
     landings, unsafe = np.zeros(feet, dtype=np.int64), np.zeros(feet, dtype=np.int64)
-    nearest, errors = np.full(feet, np.inf), [np.empty(0)]
+    nearest = np.full(feet, np.inf)
+    landing_errors, pose_errors = [np.empty((0, 2))], [np.empty((0, 3))]
     for each in crossing.footsteps:
         swung = list(controller.pairs[each.expected if each.pair is None else each.pair])
         away = edges.distance(each.feet[swung, :2])
@@ -92,13 +110,17 @@ def tally(crossing: Crossing, edges: SceneEdges, controller: ControllerIdentity)
         unsafe[swung] += away < UNSAFE
         nearest[swung] = np.minimum(nearest[swung], away)
         if each.planned is not None and each.planned.pair == each.pair:
-            errors.append(np.hypot(*(each.planned.feet - each.feet)[swung, :2].T))
+            landing_errors.append(np.abs(each.planned.feet - each.feet)[swung, :2])
+            moved = each.planned.com - each.com[:2]
+            turned = float(wrapped(np.asarray(each.planned.yaw - each.yaw)))
+            pose_errors.append(np.abs([[*moved, turned]]))
     pairs = [(each.pair, each.expected) for each in crossing.footsteps]
     return Tally(
         *(controller.feet, landings, unsafe, nearest, len(pairs)),
         wrong_pairs=sum(pair not in (None, expected) for pair, expected in pairs),
         unclear=sum(pair is None for pair, _ in pairs),
-        errors=np.concatenate(errors),
+        landing_errors=np.concatenate(landing_errors),
+        pose_errors=np.concatenate(pose_errors),
         seconds=np.array(crossing.seconds),
     )
 
@@ -113,6 +135,7 @@ def together(tallies: list[Tally]) -> Tally:
         footsteps=sum(each.footsteps for each in tallies),
         wrong_pairs=sum(each.wrong_pairs for each in tallies),
         unclear=sum(each.unclear for each in tallies),
-        errors=np.concatenate([each.errors for each in tallies]),
+        landing_errors=np.concatenate([each.landing_errors for each in tallies]),
+        pose_errors=np.concatenate([each.pose_errors for each in tallies]),
         seconds=np.concatenate([each.seconds for each in tallies]),
     )

@@ -19,7 +19,7 @@ from jaxleas.controllers import (
     find_controller,
 )
 from jaxleas.crossing.commanders import BlindCommander, Commander, PlanningCommander
-from jaxleas.crossing.courses import STOPS
+from jaxleas.crossing.course import STOPS
 from jaxleas.crossing.crossing import cross
 from jaxleas.crossing.ground_start import measured_at_start, standing_on
 from jaxleas.crossing.in_words import NotReachedError, in_words

@@ -39,6 +39,18 @@ def test_a_robot_that_gets_no_nearer_is_sent_back_and_then_on_again():
         assert 0.15 <= 1.0 - planner.goals[index].x <= 0.60
 
 
+@pytest.mark.parametrize(("x", "y"), [(1.0, 3.0), (1.5, -3.0)])
+def test_a_robot_that_walks_sideways_backs_off_sideways(x, y):
+    planner, goal = Asked(), Goal(x, y)
+    commander = PlanningCommander(planner, [goal], seed=1)
+    for _ in range(20):
+        commander.decide(state(x=1.0))
+    back = [each for each in planner.goals if each is not goal]
+    assert back
+    assert all(each.x == pytest.approx(1.0) for each in back)
+    assert all(0.15 <= -each.y * np.sign(y) <= 0.60 for each in back)
+
+
 def test_a_robot_that_gains_ground_is_not_sent_back():
     planner, goal = Asked(), Goal(3.0, 0.0)
     commander = PlanningCommander(planner, [goal])

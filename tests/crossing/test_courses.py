@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from jaxleas import cli
 from jaxleas.crossing import COURSES, make_course
+from jaxleas.crossing.waypoints import read_waypoints
 from jaxleas.terrain import ground_height, rasterise
 from jaxleas.types import InputError
 
@@ -45,7 +47,7 @@ def test_a_course_has_ground_at_its_starts_and_goals(name):
     course = make_course(name)
     assert make_course(name).goals == course.goals
     places = [(x, y) for x, y, _ in course.starts(50, seed=3)]
-    places += [(goal.x, goal.y) for goal in course.goals]
+    places.append((course.goal.x, course.goal.y))
     heights = ground_height(course.scene, np.array(places))
     np.testing.assert_allclose(heights, 0.0)
     starts = np.array(course.starts(1000, seed=1))
@@ -53,6 +55,42 @@ def test_a_course_has_ground_at_its_starts_and_goals(name):
     assert (np.abs(starts) <= limits).all()
     assert (np.abs(starts).max(axis=0) > 0.95 * limits).all()
     assert rasterise(course.scene, 0.05).void_fraction < 0.6
+
+
+def test_the_way_with_corners_leads_sideways_over_a_gap_and_a_plank():
+    course = make_course("waypoints")
+    path, goals = course.path, course.goals
+    steps = np.diff(path.position[:, :2], axis=0)
+    assert np.hypot(*steps.T).max() < 0.051
+    assert (path.yaw == 0.0).all()
+    sideways = np.abs(steps[:, 1]) > 1e-6
+    assert path.position[:-1, :2][sideways][:, 0] == pytest.approx(3.2, abs=0.05)
+    assert (goals[-1].x, goals[-1].y) == tuple(path.position[-1, :2])
+    assert all(each.speed == np.inf for each in goals[:-1])
+    places = np.array([(0.0, 0.0), *((each.x, each.y) for each in goals)])
+    assert np.hypot(*np.diff(places, axis=0).T).max() <= 0.51
+    y = np.arange(0.0, 3.2, 0.001)
+    heights = ground_height(course.scene, np.column_stack([np.full(len(y), 3.2), y]))
+    assert set(np.round(heights, 6)) == {0.0, -0.18, 0.042}
+    assert (heights < -0.01).sum() == pytest.approx(60, abs=2)  # a gap of 6 cm
+
+
+def test_a_course_without_corners_has_its_goal_alone():
+    course = make_course("stairs_1")
+    assert course.goals == (course.goal,)
+    assert course.path.position[-1, 0] == course.goal.x
+
+
+def test_course_writes_the_way_that_walk_follows(tmp_path, capsys):
+    scene, path = tmp_path / "course.json", tmp_path / "way.npz"
+    cli.run(["gait", "course", "waypoints", "--out", str(scene), "--path", str(path)])
+    assert "walk from 0,0,0 to 5.76,3.2,0 by 3.2,0 and 3.2,3.2" in capsys.readouterr().out
+    course = make_course("waypoints")
+    read = [(each.x, each.y, each.yaw) for each in read_waypoints(path)]
+    made = [(each.x, each.y, each.yaw) for each in course.goals[:-1]]
+    np.testing.assert_allclose(read, made, atol=1e-6)
+    with pytest.raises(InputError, match=r"way.json: the name of a guide path must end in .npz"):
+        cli.run(["gait", "course", "stones", "--out", str(scene), "--path", "way.json"])
 
 
 def test_a_wrong_name_lists_all_courses():

@@ -58,7 +58,8 @@ def footstep(pair, expected, x, planned_x=None):
     if planned_x is not None:
         moved = feet.copy()
         moved[0, 0] = planned_x
-        planned = PlannedFootstep(expected, np.zeros(3), np.zeros(2), 0.0, moved)
+        pose = np.array([0.01, -0.02]), 2.0 * np.pi - 0.03
+        planned = PlannedFootstep(expected, np.zeros(3), *pose, moved)
     return WalkedFootstep(1.0, pair, expected, np.zeros(3), feet, np.zeros(3), 0.0, planned)
 
 
@@ -76,10 +77,14 @@ def test_landings_wrong_pairs_and_errors_are_counted():
     assert counts.nearest[0] == pytest.approx(0.01, abs=1e-3)
     assert (counts.wrong_pairs, counts.unclear, counts.footsteps) == (1, 1, 3)
     np.testing.assert_allclose(counts.errors, [0.04, 0.0], atol=1e-9)
+    np.testing.assert_allclose(counts.landing_errors, [[0.04, 0.0], [0.0, 0.0]], atol=1e-9)
+    np.testing.assert_allclose(counts.pose_errors, [[0.01, 0.02, 0.03]], atol=1e-9)
     words = counts.in_words()
     assert "LF 1 of 2" in words
     assert "wrong pair expected: 33.3 %" in words
+    assert "1.00 cm in x, 2.00 cm in y, heading 30.0 mrad; landings 2.00 cm in x, 0.00 cm" in words
     both = together([counts, counts])
     assert both.footsteps == 6
+    assert len(both.errors) == 4
     np.testing.assert_array_equal(both.landings, 2 * counts.landings)
     np.testing.assert_array_equal(both.unsafe_share, counts.unsafe_share)

@@ -1,7 +1,7 @@
 import pytest
 
+from benchmarks.quadruped.public import simulated
 from jaxleas.footsteps import FootstepRecords
-from tests.footsteps.public import simulated
 
 
 @pytest.fixture(scope="session")

@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.quadruped.public import FORWARD, rows_of, simulated
 from jaxleas.footsteps import FitSettings, fit_motion_models, mean_absolute_error, network
 from jaxleas.footsteps.features import predictors_of
 from jaxleas.footsteps.folds import folds_of
@@ -18,8 +19,6 @@ from jaxleas.footsteps.regression import (
 )
 from jaxleas.types import InputError
 from tests.footsteps.made import elsewhere, walked
-
-FORWARD = FitSettings(movements=("forward",), network=False)
 
 
 @pytest.fixture(scope="module")
@@ -148,6 +147,15 @@ def test_public_footsteps_give_the_published_scores(of_public):
     best = the_score(of_public.scores, "com x", pair="FL/RR")
     assert best.r2 == pytest.approx(98.8, abs=0.1)
     assert best.error == pytest.approx(6.6, abs=0.2)
+    worse = {row.name: row.runs[0] for row in rows_of(of_public.scores)}
+    assert worse["public_com_x_c4_r2"] == pytest.approx(98.8, abs=0.1)
+    assert worse["public_com_x_c4_error"] == pytest.approx(6.6, abs=0.2)
+    assert worse["public_com_x_c4_r2"] <= best.r2
+
+
+def test_a_folder_without_the_public_footsteps_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"holds no sim_footsteps.npz: give the folder of the"):
+        simulated(tmp_path)
 
 
 @pytest.mark.parametrize("split", ["run", "rand"])
