@@ -2,10 +2,10 @@
 
 python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
 
-Parts: stairs, gaps, noisy, waypoints, stairs_blind, gaps_blind, waypoints_blind, plans (times, from
-starts for tuning), models, which needs --scores of `jaxleas gait fit`, and public, which needs the
-folder of the public footsteps as --public. Each part replaces its own figures in
-benchmarks/results/quadruped.json.
+Parts: stairs, gaps, noisy, waypoints, quick (stairs_1 by trot_quick), stairs_blind, gaps_blind,
+waypoints_blind, plans (times, from starts for tuning), models, which needs --scores of `jaxleas
+gait fit`, and public, which needs the folder of the public footsteps as --public. Each part
+replaces its own figures in benchmarks/results/quadruped.json.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from jaxleas.types import InputError
 OUT = Path(__file__).resolve().parents[2] / "benchmarks/results/quadruped.json"
 STAIRS = ("stairs_1", "stairs_2", "stairs_3")
 GAPS = ("gaps_1", "gaps_2", "gaps_12cm", "gaps_16cm")
-WAYPOINTS = "waypoints"
+WAYPOINTS, QUICK = "waypoints", "trot_quick"
 BLIND_GAPS = ("gaps_16cm", "gaps_20cm")
 BLIND_STAIRS_SPEED = 0.4
 BLIND_SPEEDS = (0.2, 0.4, 0.6, 0.8, 1.0)
@@ -80,6 +80,16 @@ def _waypoints_blind(given: argparse.Namespace) -> Iterator[Row]:
     found = [_told(WAYPOINTS, crossed_blind(make_course(WAYPOINTS), *_count(given), BLIND_SPEEDS))]
     yield _success("waypoints_blind_success", found, None)
     yield Row("waypoints_blind_unsafe_worst", _starts(found), [worst_unsafe(found)])
+
+
+def _quick(given: argparse.Namespace) -> Iterator[Row]:
+    """Yield the figures of one course that a controller with another cycle and touchdown walks."""
+    course = make_course(STAIRS[0])
+    found = [_told(f"{STAIRS[0]}, {QUICK}", crossed(course, *_count(given), controller=QUICK))]
+    yield _success(f"{STAIRS[0]}_success_{QUICK}", found, SUCCESS)
+    yield Row(
+        f"{STAIRS[0]}_unsafe_worst_{QUICK}", _starts(found), [worst_unsafe(found)], limit=UNSAFE
+    )
 
 
 def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
@@ -146,6 +156,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "gaps": _gaps,
     "noisy": _noisy,
     "waypoints": _waypoints,
+    "quick": _quick,
     "stairs_blind": _stairs_blind,
     "gaps_blind": _gaps_blind,
     "waypoints_blind": _waypoints_blind,

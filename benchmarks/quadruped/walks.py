@@ -58,7 +58,7 @@ class Crossed:
 
 
 def planner_on(course: Course, settings: WalkSettings) -> FootstepPlanner:
-    """Return a planner on the true map of a course."""
+    """Return a planner of the first controller on the true map of a course."""
     model = shipped_model(find_controller(CONTROLLER, load_body(BODY)).identity)
     return _planner(model, rasterise(course.scene, CELL, 0.5), settings)
 
@@ -72,6 +72,7 @@ def crossed(
     count: int,
     seed: int,
     noisy: bool = False,
+    controller: str = CONTROLLER,
     watched: Callable[[FootstepPlanner], Planner] = lambda planner: planner,
 ) -> Crossed:
     """Return what became of robots that plan at each contact.
@@ -81,10 +82,11 @@ def crossed(
         count: number of starts.
         seed: seed of the starts, and of the errors of each robot's map.
         noisy: whether each robot's map is noisy and shifted.
+        controller: name of the controller that walks.
         watched: what asks the planner in a robot's place.
     """
     settings = WalkSettings()
-    walk, start = _walk(course, course.starts(count, seed))
+    walk, start = _walk(course, course.starts(count, seed), controller)
     model = shipped_model(walk.controller.identity)
     true = rasterise(course.scene, COARSE if noisy else CELL, 0.5)
     errors = [MapErrors(NOISE, SHIFT, seed + robot) for robot in range(count)]
@@ -115,10 +117,12 @@ def crossed_blind(course: Course, count: int, seed: int, shares: Sequence[float]
     return _judged(course, walk, cross(walk, start, commanders, SECONDS))
 
 
-def _walk(course: Course, starts: Sequence[tuple[float, float, float]]) -> tuple[Walk, BodyState]:
+def _walk(
+    course: Course, starts: Sequence[tuple[float, float, float]], controller: str = CONTROLLER
+) -> tuple[Walk, BodyState]:
     body = load_body(BODY)
     physics = make_physics(body, len(starts), course.scene)
-    return Walk(physics, find_controller(CONTROLLER, body)), standing_on(course.scene, body, starts)
+    return Walk(physics, find_controller(controller, body)), standing_on(course.scene, body, starts)
 
 
 def _judged(course: Course, walk: Walk, crossings: Sequence[Crossing]) -> Crossed:
