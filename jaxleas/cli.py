@@ -79,6 +79,11 @@ COMMANDS = {
         "plan",
         "plan the next footsteps of a controller",
     ),
+    "gait distill": (
+        "jaxleas.crossing.distill_command",
+        "distill",
+        "teach a network what the footstep planner would choose",
+    ),
     "gait walk": (
         "jaxleas.crossing.walk_command",
         "walk",

@@ -11,7 +11,6 @@ from jaxleas.crossing import (
     Course,
     Crossing,
     MapErrors,
-    Planner,
     PlanningCommander,
     Tally,
     WalkSettings,
@@ -20,7 +19,14 @@ from jaxleas.crossing import (
     tally,
     together,
 )
-from jaxleas.footsteps import FootCostMap, FootstepPlanner, MotionModel, buffer_of, shipped_model
+from jaxleas.footsteps import (
+    FootCostMap,
+    FootstepPlanner,
+    MotionModel,
+    Planner,
+    buffer_of,
+    shipped_model,
+)
 from jaxleas.physics import BodyState, load_body, make_physics
 from jaxleas.terrain import HeightMap, SceneEdges, rasterise
 

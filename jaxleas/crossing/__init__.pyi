@@ -1,7 +1,6 @@
 from .commanders import BlindCommander as BlindCommander
 from .commanders import Commander as Commander
 from .commanders import Decision as Decision
-from .commanders import Planner as Planner
 from .commanders import PlanningCommander as PlanningCommander
 from .course import Course as Course
 from .courses import COURSES as COURSES
@@ -24,5 +23,8 @@ from .walk_log import WalkLogger as WalkLogger
 from .walk_log import footstep_arrays as footstep_arrays
 from .walk_log import read_walk_log as read_walk_log
 from .walk_log import write_walk_log as write_walk_log
+from .walk_planner import costs_of as costs_of
+from .walk_planner import model_of as model_of
+from .walk_planner import planner_of as planner_of
 from .walk_settings import WalkSettings as WalkSettings
 from .walked_footsteps import WalkedFootstep as WalkedFootstep

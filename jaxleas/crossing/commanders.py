@@ -11,7 +11,7 @@ from jaxtyping import Float
 from jaxleas.crossing.goals import Goals
 from jaxleas.crossing.run_up import RunUp
 from jaxleas.crossing.stop import Stop
-from jaxleas.footsteps import FootstepPlan, Goal, WalkingState, turned, wrapped
+from jaxleas.footsteps import FootstepPlan, Goal, Planner, WalkingState, turned, wrapped
 from jaxleas.types import ControllerIdentity, InputError
 
 Intent = Literal["go", "arrived", "no path"]
@@ -46,14 +46,6 @@ class Commander(Protocol):
         Args:
             state: measured state.
         """
-        ...
-
-
-class Planner(Protocol):
-    """Plans footsteps on a map, as `FootstepPlanner` does."""
-
-    def plan(self, state: WalkingState, goal: Goal) -> FootstepPlan:
-        """Return the footsteps from a measured state towards a goal."""
         ...
 
 

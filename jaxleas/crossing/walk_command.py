@@ -1,7 +1,6 @@
 """The function behind `jaxleas gait walk`."""
 
 import sys
-from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from jaxleas.configuration import Allow
 from jaxleas.controllers import (
     DEFAULT_CONTROLLER,
     TICK,
-    Controller,
     ControllerName,
     Ticked,
     Walk,
@@ -31,19 +29,13 @@ from jaxleas.crossing.walk_log import (
     footstep_arrays,
     write_walk_log,
 )
+from jaxleas.crossing.walk_planner import costs_of, model_of, planner_of
 from jaxleas.crossing.walk_settings import WalkSettings
 from jaxleas.crossing.waypoints import read_waypoints
 from jaxleas.footsteps import (
-    FootCostMap,
-    FootstepPlanner,
-    Goal,
-    MotionModel,
-    buffer_of,
+    ProposedPlanner,
     parse_pose,
-    read_motion_model,
-    require_goal,
     require_start,
-    shipped_model,
 )
 from jaxleas.physics import DEFAULT_BODY, load_body, make_physics
 from jaxleas.runs import Progress, collect_provenance
@@ -73,6 +65,7 @@ def walk(
     models: Path | None = None,
     waypoints: Path | None = None,
     blind: float | None = None,
+    proposal: str | None = None,
     log: Path | None = None,
     settings: WalkSettings = WalkSettings(),  # noqa: B008  # its fields are options
     errors: MapErrors = MapErrors(),  # noqa: B008
@@ -94,6 +87,8 @@ def walk(
         models: motion models of the controller; by default those of the package.
         waypoints: guide path that leads to the goal, as jaxleas navigate writes it.
         blind: speed over the largest at which the robot goes straight to the goal, without a map.
+        proposal: file of a proposal, as jaxleas gait distill writes it, that is asked before the
+            planner; 'shipped' for that of the package.
         log: file for state and torques of every physics step (.npz).
         settings: how the robot is walked.
         errors: how the robot's map differs from the terrain.
@@ -102,6 +97,8 @@ def walk(
     """
     if log is not None and log.suffix != ".npz":
         raise InputError(f"{log}: the name of a log must end in .npz")
+    if proposal is not None and blind is not None:
+        raise InputError("--proposal and --blind: a blind walk asks no proposal; give one of them")
     body = load_body(robot)
     walker = find_controller(controller, body, (controller, *allow))
     scene = _scene_of(terrain, reading)
@@ -110,12 +107,14 @@ def walk(
     place = parse_pose(start, "--start")
     stands = standing_on(scene, body, [(place.x, place.y, place.yaw)])
     physics = Walk(make_physics(body, 1, scene), walker)
+    proposed: ProposedPlanner | None = None
     if blind is None:
         height_map = errors.of(_map_of(terrain, reading))
-        model = _model(models, walker)
-        costs = _costs(model, height_map, goals, settings)
+        model = model_of(models, walker)
+        costs = costs_of(model, height_map, goals, settings)
         require_start(measured_at_start(physics, stands), costs, walker.identity)
-        planner = FootstepPlanner(model, costs, settings.search)
+        planner = planner_of(proposal, model, costs, settings)
+        proposed = planner if isinstance(planner, ProposedPlanner) else None
         commander: Commander = PlanningCommander(planner, goals)
     else:
         commander = BlindCommander(walker.identity, goals, blind)
@@ -127,10 +126,12 @@ def walk(
     if crossing.outcome == "reached":
         print(in_words(crossing, goals[-1]))
     print(counts.in_words())
+    if proposed is not None:
+        print(proposed.in_words())
     if log is not None:
         chosen = {
             **{"terrain": str(terrain), "goal": goal, "start": start, "blind": blind},
-            **{"settings": asdict(settings), "map": asdict(errors)},
+            **{"proposal": proposal, "settings": asdict(settings), "map": asdict(errors)},
         }
         outcome = {"outcome": crossing.outcome, "time": crossing.time, "cause": crossing.cause}
         description = WalkDescription(
@@ -172,23 +173,3 @@ def _map_of(terrain: Path, reading: Reading) -> HeightMap:
     if reading.resolution is None and has_polygons(terrain):
         reading = replace(reading, resolution=CELL)
     return import_terrain(terrain, reading)
-
-
-def _model(models: Path | None, walker: Controller) -> MotionModel:
-    """Return motion models of the controller that walks."""
-    if models is None:
-        return shipped_model(walker.identity)
-    model = read_motion_model(models)
-    walker.identity.require_same(model.controller, str(models), "the walk")
-    return model
-
-
-def _costs(
-    model: MotionModel, height_map: HeightMap, goals: Sequence[Goal], settings: WalkSettings
-) -> FootCostMap:
-    """Return the foot cost map of the robot's map, on which all goals are."""
-    buffer = buffer_of(model) if settings.buffer is None else settings.buffer
-    costs = FootCostMap.of(height_map, buffer)
-    for goal in goals:
-        require_goal(goal, costs)
-    return costs

@@ -7,17 +7,14 @@ its end; the horizon is the number of footsteps of a plan. The thesis's cost is 
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from jaxleas.footsteps.beam import beam_search
 from jaxleas.footsteps.cost_map import FootCostMap
 from jaxleas.footsteps.exact_search import exact_search
 from jaxleas.footsteps.expansion import Expander, Limits
-from jaxleas.footsteps.features import turned
 from jaxleas.footsteps.model import MotionModel
 from jaxleas.footsteps.plan import FootstepPlan, PlannedFootstep
 from jaxleas.footsteps.search_costs import Cost, Found, SearchCosts
-from jaxleas.footsteps.search_states import Node
+from jaxleas.footsteps.search_states import Node, start_node
 from jaxleas.footsteps.walking_state import Goal, WalkingState, require_goal
 from jaxleas.footsteps.way_left import Strides, WayLeft
 from jaxleas.types import InputError
@@ -66,6 +63,11 @@ class SearchSettings:
                 f" negative clearance: {self}"
             )
 
+    @property
+    def limits(self) -> Limits:
+        """What footsteps are kept within."""
+        return Limits(self.fastest, self.climbing, self.doubt, self.jump, self.sway)
+
 
 WIDTH = 64
 """Width of a search that is not exact."""
@@ -93,9 +95,7 @@ class FootstepPlanner:
     ) -> None:
         self._costs = costs
         self._settings = SearchSettings() if settings is None else settings
-        chosen = self._settings
-        limits = Limits(chosen.fastest, chosen.climbing, chosen.doubt, chosen.jump, chosen.sway)
-        self._expander = Expander(model, costs, limits)
+        self._expander = Expander(model, costs, self._settings.limits)
         self._strides = Strides.of(model, self._expander.commands)
 
     def plan(self, state: WalkingState, goal: Goal) -> FootstepPlan:
@@ -105,7 +105,7 @@ class FootstepPlanner:
             InputError: the goal is outside the map.
         """
         require_goal(goal, self._costs)
-        settings, start = self._settings, _start(state, self._costs)
+        settings, start = self._settings, start_node(state, self._costs)
         self._expander.forget()
         if goal.is_met_by(state):
             return self._plan(Found("reached", start, 0.0, 0.0))
@@ -165,21 +165,3 @@ def plan_footsteps(
         InputError: the goal is outside the map.
     """
     return FootstepPlanner(model, costs, settings).plan(state, goal)
-
-
-def _start(state: WalkingState, costs: FootCostMap) -> Node:
-    """Return a measured state as a node; feet stand on the map where it has ground."""
-    ground = costs.height_map.height_at(state.feet[:, :2]).astype(np.float64)
-    feet = np.column_stack(
-        [state.feet[:, :2], np.where(np.isnan(ground), state.feet[:, 2], ground)]
-    )
-    velocity = turned(state.com_velocity, np.asarray(-state.yaw))
-    return Node(
-        com=state.com[:2].astype(np.float64),
-        yaw=state.yaw,
-        velocity=np.append(velocity, state.yaw_rate),
-        feet=feet,
-        pair=state.pair,
-        command=state.command.astype(np.float64),
-        earlier=(state.command if state.earlier is None else state.earlier).astype(np.float64),
-    )

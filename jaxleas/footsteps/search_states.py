@@ -5,6 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from jaxleas.footsteps.cost_map import FootCostMap
+from jaxleas.footsteps.features import turned
+from jaxleas.footsteps.model import MOTION, MotionModel
+from jaxleas.footsteps.plan import PlannedFootstep
+from jaxleas.footsteps.walking_state import WalkingState
+
 
 @dataclass(frozen=True, eq=False)
 class Node:
@@ -58,3 +64,38 @@ class Children:
     velocity: Float[np.ndarray, "K 4"]
     landings: Float[np.ndarray, "K S 3"]
     near: Float[np.ndarray, " K"]
+
+
+def start_node(state: WalkingState, costs: FootCostMap) -> Node:
+    """Return a measured state as a node; feet stand on the map where it has ground."""
+    ground = costs.height_map.height_at(state.feet[:, :2]).astype(np.float64)
+    feet = np.column_stack(
+        [state.feet[:, :2], np.where(np.isnan(ground), state.feet[:, 2], ground)]
+    )
+    velocity = turned(state.com_velocity, np.asarray(-state.yaw))
+    return Node(
+        com=state.com[:2].astype(np.float64),
+        yaw=state.yaw,
+        velocity=np.append(velocity, state.yaw_rate),
+        feet=feet,
+        pair=state.pair,
+        command=state.command.astype(np.float64),
+        earlier=(state.command if state.earlier is None else state.earlier).astype(np.float64),
+    )
+
+
+def node_after(model: MotionModel, node: Node, footstep: PlannedFootstep) -> Node:
+    """Return the state after a planned footstep.
+
+    Args:
+        model: motion models, which predict the velocity.
+        node: state before it.
+        footstep: footstep.
+    """
+    feet = turned(node.feet[:, :2] - node.com, np.asarray(-node.yaw))
+    seen = np.concatenate([footstep.command, feet.ravel(), node.command, node.velocity])
+    return Node(
+        *(footstep.com, footstep.yaw, model.predict(node.pair, seen[None])[0, 3:MOTION]),
+        *(footstep.feet, (node.pair + 1) % len(model.controller.pairs)),
+        *(footstep.command, node.command),
+    )
