@@ -1,35 +1,33 @@
 """The function behind `jaxleas view`."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jaxleas.configuration import Allow
+from jaxleas.controllers import ControllerName
 from jaxleas.runs import interrupts_deferred
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
+from jaxleas.viewer.policy_robots import drive_policies, load_robots
 from jaxleas.viewer.refusals import require_drive, require_moving
 
 if TYPE_CHECKING:
     from viser import ViserServer
 
-    from jaxleas.envs.steering import SteeringEnv
-    from jaxleas.guide import OnnxPolicy
     from jaxleas.robots import Robot
     from jaxleas.terrain import HeightMap
-    from jaxleas.training import Policy
     from jaxleas.viewer.clips import Clip
-    from jaxleas.viewer.drive import Drive
+    from jaxleas.viewer.legged_view import Quadruped
     from jaxleas.viewer.show import Player
-
-    NamedRobot = tuple[str, SteeringEnv, Policy | OnnxPolicy]
 
 
 def view(
     terrain: Path,
     *,
     policies: Sequence[Path] | None = None,
+    controller: ControllerName | None = None,
     start: tuple[float, float, float] | None = None,
     goal: tuple[float, float] | None = None,
     guide: Path | None = None,
@@ -50,6 +48,8 @@ def view(
     Args:
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         policies: run folders, policy.npz or .onnx files: one robot each, side by side.
+        controller: walking controller of a quadruped (ANYmal B), whose footsteps are planned while
+            it walks in physics to where it is sent.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
         goal: first goal of the robots: x, y [m].
         guide: guide paths to play back, .npz.
@@ -76,8 +76,9 @@ def view(
 
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
-    require_drive(policies, start, goal)
-    require_moving(policies, goal, guide, plan, record)
+    driven = [str(each) for each in policies or ()] + ([controller] if controller else [])
+    require_drive(driven, start, goal)
+    require_moving(driven, goal, guide, plan, record)
     for each in policies or ():  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
@@ -90,11 +91,15 @@ def view(
     if drawn is not None and robot is None:
         _warn_of_height(clips, drawn, ground)
     scene = read_scene(terrain) if terrain.suffix.lower() == ".json" else None
-    with serving(host, 0 if record else port) as server, _until_interrupted(record is None):
+    with (
+        serving(host, 0 if record else port) as server,
+        _until_interrupted(record is None),
+        ExitStack() as kept,
+    ):
         draw_terrain(server, ground, scene)
         if surfaces and is_map(terrain):
             show_surfaces(server, terrain, ground, search)
-        if policies:
+        if driven:
             look_near(server, ground, None if start is None else start[:2])
         recorder = Recorder(server)
         if record is None:
@@ -107,9 +112,13 @@ def view(
             players.append(_play_back(server, drawn, clips, playing=record is not None))
         if policies:
             waiting = server.gui.add_markdown("The policies are being loaded ...")
-            robots = _load_robots(policies, allow)
-            players.append(_drive(server, ground, robots, start, goal))
+            robots = load_robots(policies, allow)
+            players.append(drive_policies(server, ground, robots, start, goal))
             waiting.remove()
+        if controller:
+            made = _walker(server, ground, (terrain, reading, controller, start))
+            is_live = record is None
+            players.append(kept.enter_context(made.on(server, ground, goal, is_live)))
         if record is None:
             show(players, recorder)
         else:
@@ -175,50 +184,18 @@ def _play_back(
     return playback
 
 
-def _load_robots(policies: Sequence[Path], allow: Allow) -> "list[NamedRobot]":
-    """Return name, environment and policy of each robot."""
-    with interrupts_deferred():
-        from jaxleas.envs.steering import SteeringEnv
-        from jaxleas.guide import load_policy
-        from jaxleas.xla import keep_compiled_programs
-
-    keep_compiled_programs()
-    loaded = [load_policy(each, allow) for each in policies]
-    envs = [SteeringEnv(each.config, allow=allow) for each in loaded]
-    return list(zip(_names(policies), envs, loaded, strict=True))
-
-
-def _drive(
+def _walker(
     server: "ViserServer",
-    terrain: "HeightMap",
-    robots: "list[NamedRobot]",
-    start: tuple[float, float, float] | None,
-    goal: tuple[float, float] | None,
-) -> "Drive":
+    ground: "HeightMap",
+    options: "tuple[Path, Reading, str, tuple[float, float, float] | None]",
+) -> "Quadruped":
+    """Return a quadruped that stands where it begins, which the page looks at."""
+    waiting = server.gui.add_markdown("The quadruped is being made ...")
     with interrupts_deferred():
-        from jaxleas.guide import choose_start, require_start
-        from jaxleas.terrain import make_atlas
-        from jaxleas.viewer.drive import Drive
-        from jaxleas.viewer.driven_robot import DrivenRobot
         from jaxleas.viewer.ground import look_near
+        from jaxleas.viewer.legged_view import Quadruped
 
-    first = robots[0][1]
-    place = choose_start(first, terrain) if start is None else require_start(first, terrain, start)
-    x, y, _ = place.position
-    look_near(server, terrain, (float(x), float(y)))
-    atlas = make_atlas([terrain])
-    driven = [DrivenRobot(name, env, policy, atlas) for name, env, policy in robots]
-    drive = Drive(server, terrain, driven, place)
-    if goal is not None:
-        drive.send(goal)
-    return drive
-
-
-def _names(paths: Sequence[Path]) -> list[str]:
-    """Return the names of policies: the run folder, with the file where two are equal."""
-    whole = [each.resolve() for each in paths]
-    short = [each.parent.name if each.stem == "policy" else each.stem for each in whole]
-    return [
-        name if short.count(name) == 1 else "/".join(each.parts[-2:])
-        for name, each in zip(short, whole, strict=True)
-    ]
+    made = Quadruped(*options)
+    look_near(server, ground, made.place)
+    waiting.remove()
+    return made

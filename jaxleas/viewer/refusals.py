@@ -9,14 +9,14 @@ FARTHEST = 1e6  # largest coordinate of a start or a goal [m]
 
 
 def require_drive(
-    policies: Sequence[Path] | None,
+    driven: Sequence[str],
     start: tuple[float, float, float] | None,
     goal: tuple[float, float] | None,
 ) -> None:
     """Refuse a start or a goal without a robot, or with numbers that are no place.
 
     Args:
-        policies: policies to drive, if any.
+        driven: policies and controllers to drive, if any.
         start: start of the robots: x, y [m] and heading [deg]; None if not given.
         goal: first goal of the robots: x, y [m]; None if not given.
 
@@ -30,12 +30,14 @@ def require_drive(
         if numbers is not None and not all(abs(each) < FARTHEST for each in numbers):
             given = " ".join(f"{each:g}" for each in numbers)
             raise InputError(f"{option} {given}: give finite numbers below 1000 km, {wanted}")
-        if numbers is not None and not policies:
-            raise InputError(f"{option} needs --policies: there is no robot to walk there")
+        if numbers is not None and not driven:
+            raise InputError(
+                f"{option} needs --policies or --controller: there is no robot to walk there"
+            )
 
 
 def require_moving(
-    policies: Sequence[Path] | None,
+    driven: Sequence[str],
     goal: tuple[float, float] | None,
     guide: Path | None,
     plan: Path | None,
@@ -44,7 +46,7 @@ def require_moving(
     """Refuse a recording in which nothing moves.
 
     Args:
-        policies: policies to drive, if any.
+        driven: policies and controllers to drive, if any.
         goal: first goal of the robots: x, y [m].
         guide: file of guide paths to play back.
         plan: file of a contact plan to play back.
@@ -57,7 +59,9 @@ def require_moving(
         return
     if record.suffix != ".html":
         raise InputError(f"--record {record}: recordings are written as .html")
-    if policies and goal is None:
-        raise InputError("--record with --policies needs --goal X Y: where the robots walk to")
-    if not (policies or guide or plan):
-        raise InputError("--record needs something that moves: --policies, --guide or --plan")
+    if driven and goal is None:
+        raise InputError("--record with a robot needs --goal X Y: where it walks to")
+    if not (driven or guide or plan):
+        raise InputError(
+            "--record needs something that moves: --policies, --controller, --guide or --plan"
+        )

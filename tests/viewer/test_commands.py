@@ -15,7 +15,8 @@ from jaxleas.terrain import transition, write_height_map, write_scene
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from jaxleas.viewer import server as viewer_server
-from jaxleas.viewer.commands import _names, view
+from jaxleas.viewer.commands import view
+from jaxleas.viewer.policy_robots import names_of
 from jaxleas.viewer.server import from_elsewhere, open_browser, serving
 from tests.guide.walkers import flat_map, random_policy
 from tests.viewer.test_clips import straight
@@ -88,8 +89,8 @@ def test_bad_input_is_one_sentence(terrain, tmp_path):
         ({"record": tmp_path / "a.html"}, "something that moves"),
         ({"record": tmp_path / "a.html", "policies": [terrain]}, "--goal"),
         ({"goal": (np.nan, 0.0), "policies": [terrain]}, "--goal nan 0: give finite numbers"),
-        ({"goal": (1.0, 0.0)}, "--goal needs --policies"),
-        ({"start": (1.0, 0.0, 0.0)}, "--start needs --policies"),
+        ({"goal": (1.0, 0.0)}, "--goal needs --policies or --controller"),
+        ({"start": (1.0, 0.0, 0.0)}, "--start needs --policies or --controller"),
         ({"start": (1e9, 0.0, 0.0), "policies": [terrain]}, "--start 1e+09 0 0: give finite"),
         ({"policies": [tmp_path / "nobody"]}, "there is no"),
         ({"guide": terrain}, "lacks the array"),
@@ -140,8 +141,8 @@ def test_the_ground_is_shown_before_jax_is_loaded():
 def test_policies_of_one_run_are_told_apart(tmp_path):
     run = tmp_path / "run"
     both = [run / "policy.npz", run / "policy.onnx"]
-    assert _names([run]) == ["run"] == _names(both[:1])
-    assert _names([*both, tmp_path / "other.onnx"]) == [
+    assert names_of([run]) == ["run"] == names_of(both[:1])
+    assert names_of([*both, tmp_path / "other.onnx"]) == [
         "run/policy.npz",
         "run/policy.onnx",
         "other",
