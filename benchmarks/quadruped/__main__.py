@@ -2,10 +2,10 @@
 
 python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
 
-Parts: stairs, gaps, noisy, waypoints, quick (stairs_1 by trot_quick), stairs_blind, gaps_blind,
-waypoints_blind, plans (times, from starts for tuning), models, which needs --scores of `jaxleas
-gait fit`, and public, which needs the folder of the public footsteps as --public. Each part
-replaces its own figures in benchmarks/results/quadruped.json.
+Parts: stairs, gaps, noisy, waypoints, quick (stairs_1 by trot_quick), in_turn (high steps by two
+controllers), stairs_blind, gaps_blind, waypoints_blind, plans (times, from starts for tuning),
+models, which needs --scores of `jaxleas gait fit`, and public, which needs the folder of the public
+footsteps as --public. Each part replaces its own figures in benchmarks/results/quadruped.json.
 """
 
 import argparse
@@ -18,7 +18,13 @@ from benchmarks.measurements import read_measurements, this_machine, write_measu
 from benchmarks.quadruped.models import model_rows
 from benchmarks.quadruped.plans import plan_rows
 from benchmarks.quadruped.public import public_rows
-from benchmarks.quadruped.walks import Crossed, crossed, crossed_blind, worst_unsafe
+from benchmarks.quadruped.walks import (
+    Crossed,
+    crossed,
+    crossed_blind,
+    crossed_in_turn,
+    worst_unsafe,
+)
 from jaxleas.cli_guard import run_guarded
 from jaxleas.crossing import make_course
 from jaxleas.terrain import EVALUATION_SEED, HELD_OUT_SEED
@@ -28,6 +34,7 @@ OUT = Path(__file__).resolve().parents[2] / "benchmarks/results/quadruped.json"
 STAIRS = ("stairs_1", "stairs_2", "stairs_3")
 GAPS = ("gaps_1", "gaps_2", "gaps_12cm", "gaps_16cm")
 WAYPOINTS, QUICK = "waypoints", "trot_quick"
+HIGH, IN_TURN = "stairs_high", ("trot", "trot_high")
 BLIND_GAPS = ("gaps_16cm", "gaps_20cm")
 BLIND_STAIRS_SPEED = 0.4
 BLIND_SPEEDS = (0.2, 0.4, 0.6, 0.8, 1.0)
@@ -90,6 +97,18 @@ def _quick(given: argparse.Namespace) -> Iterator[Row]:
     yield Row(
         f"{STAIRS[0]}_unsafe_worst_{QUICK}", _starts(found), [worst_unsafe(found)], limit=UNSAFE
     )
+
+
+def _in_turn(given: argparse.Namespace) -> Iterator[Row]:
+    """Yield success where a controller of high swings takes over, and how rarely it does."""
+    found = [_told(HIGH, crossed_in_turn(make_course(HIGH), *_count(given), IN_TURN))]
+    yield _success("stairs_high_success", found, SUCCESS)
+    yield Row("stairs_high_unsafe_worst", _starts(found), [worst_unsafe(found)])
+    yield Row(
+        "stairs_high_share", f"% of footsteps by {IN_TURN[1]}", [found[0].share_of(IN_TURN[1])]
+    )
+    alone = [_told(f"{HIGH}, {IN_TURN[0]} alone", crossed(make_course(HIGH), *_count(given)))]
+    yield _success("stairs_high_success_low_alone", alone, None)
 
 
 def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
@@ -157,6 +176,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "noisy": _noisy,
     "waypoints": _waypoints,
     "quick": _quick,
+    "in_turn": _in_turn,
     "stairs_blind": _stairs_blind,
     "gaps_blind": _gaps_blind,
     "waypoints_blind": _waypoints_blind,

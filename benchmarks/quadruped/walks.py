@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jaxleas.controllers import Walk, find_controller
+from jaxleas.controllers import Switching, Walk, find_controller
 from jaxleas.crossing import (
     BlindCommander,
     Course,
     Crossing,
+    InTurn,
     MapErrors,
     PlanningCommander,
     Tally,
@@ -56,6 +57,11 @@ class Crossed:
         """Number of robots that stand at the goal."""
         return sum(each.outcome == "reached" for each in self.crossings)
 
+    def share_of(self, controller: str) -> float:
+        """Return the share of all footsteps that a controller made [%]."""
+        made = [each.controller for one in self.crossings for each in one.footsteps]
+        return 100.0 * made.count(controller) / max(len(made), 1)
+
     @property
     def endings(self) -> str:
         """How the robots ended, counted."""
@@ -101,6 +107,27 @@ def crossed(
     commanders = [
         PlanningCommander(planners[robot % len(planners)], course.goals) for robot in range(count)
     ]
+    return _judged(course, walk, cross(walk, start, commanders, SECONDS))
+
+
+def crossed_in_turn(course: Course, count: int, seed: int, controllers: Sequence[str]) -> Crossed:
+    """Return what became of robots whose controllers take turns, by the terrain ahead.
+
+    Args:
+        course: course to cross.
+        count: number of starts.
+        seed: seed of the starts.
+        controllers: names of the controllers.
+    """
+    settings, body = WalkSettings(), load_body(BODY)
+    walkers = [find_controller(name, body) for name in controllers]
+    models = [shipped_model(each.identity) for each in walkers]
+    true = rasterise(course.scene, CELL, 0.5)
+    turns = InTurn(walkers, models, true, course.goals, settings, body)
+    starts = course.starts(count, seed)
+    walk = Walk(make_physics(body, count, course.scene), Switching(walkers))
+    commanders = [PlanningCommander(turns.planner(), course.goals) for _ in starts]
+    start = standing_on(course.scene, body, starts)
     return _judged(course, walk, cross(walk, start, commanders, SECONDS))
 
 

@@ -8,6 +8,7 @@ from .falls import FALLS as FALLS
 from .falls import UPRIGHT as UPRIGHT
 from .falls import Fall as Fall
 from .falls import falls as falls
+from .switching import Switching as Switching
 from .trot import Trot as Trot
 from .trot_settings import TrotGains as TrotGains
 from .trot_settings import TrotSettings as TrotSettings

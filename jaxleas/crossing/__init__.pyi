@@ -5,14 +5,15 @@ from .commanders import PlanningCommander as PlanningCommander
 from .course import Course as Course
 from .courses import COURSES as COURSES
 from .courses import make_course as make_course
-from .crossing import Crossing as Crossing
-from .crossing import Outcome as Outcome
 from .crossing import cross as cross
 from .first_pair import first_pair as first_pair
 from .ground_start import measured_at_start as measured_at_start
 from .ground_start import standing_on as standing_on
+from .in_turn import InTurn as InTurn
 from .in_words import NotReachedError as NotReachedError
 from .in_words import in_words as in_words
+from .outcomes import Crossing as Crossing
+from .outcomes import Outcome as Outcome
 from .seen_map import MapErrors as MapErrors
 from .tally import Tally as Tally
 from .tally import tally as tally

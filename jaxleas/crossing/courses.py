@@ -47,6 +47,26 @@ LANDING = 1.0
 """Length of the landing between two stairs [m]."""
 
 
+def low_and_high(name: str) -> Course:
+    """Return a low plank, and two high steps up and two down, of which a low swing clears none.
+
+    Args:
+        name: name of the course.
+    """
+    heights = (0.0, LOW_RISER, 0.0, HIGH_RISER, 2.0 * HIGH_RISER, HIGH_RISER, 0.0)
+    lengths = (BEHIND + RUN_UP, 0.8, 1.6, 1.0, LANDING, 1.0, 2.5 * BEHIND)
+    ends = np.cumsum((-BEHIND, *lengths)).tolist()
+    strips = {
+        f"level_{number}": ((ends[number], ends[number + 1]), height)
+        for number, height in enumerate(heights)
+    }
+    return Course(name, _strips(strips), stop_at(ends[-1] - BEHIND))
+
+
+LOW_RISER, HIGH_RISER = 0.042, 0.08
+"""Risers that swings of 6.5 cm clear, and that they do not [m]."""
+
+
 def gaps(name: str, widths: Sequence[float], seed: int) -> Course:
     """Return blocks with gaps between them; the ground is 18 cm lower.
 
@@ -107,6 +127,7 @@ COURSES: Mapping[str, Callable[[], Course]] = MappingProxyType(
         "stairs_1": lambda: stairs("stairs_1", 0.042, 1.0 / 3.0),
         "stairs_2": lambda: stairs("stairs_2", 0.042, 0.25),
         "stairs_3": lambda: stairs("stairs_3", 0.05, 0.20),
+        "stairs_high": lambda: low_and_high("stairs_high"),
         "gaps_1": lambda: gaps("gaps_1", _THESIS_1, seed=1),
         "gaps_2": lambda: gaps("gaps_2", _THESIS_2, seed=2),
         "gaps_12cm": lambda: gaps("gaps_12cm", (0.12,) * 5, seed=3),

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float
@@ -10,44 +10,18 @@ from jaxtyping import Float
 from jaxleas.controllers import FALLS, TICK, UPRIGHT, Controller, Ticked, Walk, Walking, falls
 from jaxleas.crossing.commanders import Commander, Decision
 from jaxleas.crossing.first_pair import first_pair
+from jaxleas.crossing.outcomes import Crossing, Outcome
 from jaxleas.crossing.stop import RESTS
+from jaxleas.crossing.taking_turns import take_turns
 from jaxleas.crossing.walked_footsteps import WalkedFootstep, first_of
 from jaxleas.footsteps import NONE, TOUCHES, ContactWatch, FootstepPlan, WalkingState
 from jaxleas.physics import Body, BodyState, Sensed
 from jaxleas.types import InputError
 
-Outcome = Literal["reached", "no path", "fell", "time", "interrupted"]
-"""It stands at the goal; no command was safe, and it stands; it fell; its time was over; a person
-stopped it."""
 SETTLES = 0.4
 """Time from the command to stand until a robot is asked whether it rests [s]."""
 LATE = 1.0
 """Time after which a walking robot is commanded anew although no footstep has ended [s]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Crossing:
-    """What became of one robot.
-
-    Attributes:
-        outcome: how it ended.
-        time: time of the end [s].
-        cause: what showed a fall, one of `jaxleas.controllers.FALLS`; "" otherwise.
-        com: last position of the centre of mass [m].
-        yaw: last heading [rad].
-        footsteps: footsteps that it made.
-        seconds: time that each decision took [s].
-        last_plan: last plan, which says why there is no path; None without a planner.
-    """
-
-    outcome: Outcome
-    time: float
-    cause: str
-    com: Float[np.ndarray, "3"]
-    yaw: float
-    footsteps: tuple[WalkedFootstep, ...]
-    seconds: tuple[float, ...]
-    last_plan: FootstepPlan | None
 
 
 class Observer(Protocol):
@@ -116,6 +90,9 @@ def cross(
                     _attend(robot, index, walking, int(ended[index]), walk.controller)
             if all(robot.ended for robot in robots):
                 break
+            walking, begun = take_turns(walking, [_plan(each) for each in robots], walk.controller)
+            for index in begun:
+                robots[index].pair = pair
             command = np.stack([_command(robot) for robot in robots])
             ticked = walk.tick(walking, command, rng)
             if observe is not None:
@@ -162,6 +139,11 @@ def _command(robot: _Robot) -> Float[np.ndarray, "3"]:
     return np.zeros(3) if robot.decision is None or robot.ended else robot.decision.command
 
 
+def _plan(robot: _Robot) -> FootstepPlan | None:
+    """Return the plan that is walked now."""
+    return None if robot.decision is None or robot.ended else robot.decision.plan
+
+
 def _state(robot: _Robot, index: int, sensed: Sensed) -> WalkingState:
     return WalkingState(
         com=sensed.com[index],
@@ -176,6 +158,7 @@ def _state(robot: _Robot, index: int, sensed: Sensed) -> WalkingState:
 
 
 def _walked(robot: _Robot, index: int, sensed: Sensed, ended: int) -> WalkedFootstep:
+    plan = None if robot.decision is None else robot.decision.plan
     return WalkedFootstep(
         time=float(sensed.time[index]),
         pair=ended if ended >= 0 else None,
@@ -184,7 +167,8 @@ def _walked(robot: _Robot, index: int, sensed: Sensed, ended: int) -> WalkedFoot
         feet=sensed.feet[index],
         com=sensed.com[index],
         yaw=float(sensed.yaw[index]),
-        planned=first_of(robot.decision.plan) if robot.decision is not None else None,
+        planned=first_of(plan),
+        controller="" if plan is None else plan.controller,
     )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jaxleas.crossing.crossing import Crossing
+from jaxleas.crossing.outcomes import Crossing
 from jaxleas.footsteps import Goal
 from jaxleas.types import JaxleasError
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from jaxleas.crossing.crossing import Crossing
+from jaxleas.crossing.outcomes import Crossing
 from jaxleas.footsteps import UNSAFE, wrapped
 from jaxleas.terrain import SceneEdges
 from jaxleas.types import ControllerIdentity

@@ -12,6 +12,7 @@ from jaxleas.controllers import (
     DEFAULT_CONTROLLER,
     TICK,
     ControllerName,
+    Switching,
     Ticked,
     Walk,
     find_controller,
@@ -20,6 +21,7 @@ from jaxleas.crossing.commanders import BlindCommander, Commander, PlanningComma
 from jaxleas.crossing.course import STOPS
 from jaxleas.crossing.crossing import cross
 from jaxleas.crossing.ground_start import measured_at_start, standing_on
+from jaxleas.crossing.in_turn import InTurn
 from jaxleas.crossing.in_words import NotReachedError, in_words
 from jaxleas.crossing.seen_map import MapErrors
 from jaxleas.crossing.tally import tally
@@ -63,6 +65,7 @@ def walk(
     controller: ControllerName = DEFAULT_CONTROLLER,
     robot: str = DEFAULT_BODY,
     models: Path | None = None,
+    higher: ControllerName | None = None,
     waypoints: Path | None = None,
     blind: float | None = None,
     proposal: str | None = None,
@@ -85,6 +88,8 @@ def walk(
         controller: controller that walks.
         robot: robot that walks, or its MJCF file (.xml).
         models: motion models of the controller; by default those of the package.
+        higher: controller with higher swings, which takes over where the ground ahead needs them;
+            its motion models are those of the package.
         waypoints: guide path that leads to the goal, as jaxleas navigate writes it.
         blind: speed over the largest at which the robot goes straight to the goal, without a map.
         proposal: file of a proposal, as jaxleas gait distill writes it, that is asked before the
@@ -99,14 +104,19 @@ def walk(
         raise InputError(f"{log}: the name of a log must end in .npz")
     if proposal is not None and blind is not None:
         raise InputError("--proposal and --blind: a blind walk asks no proposal; give one of them")
+    if higher is not None and (proposal is not None or blind is not None):
+        raise InputError("--higher chooses a controller by its plans: leave --proposal or --blind")
     body = load_body(robot)
     walker = find_controller(controller, body, (controller, *allow))
+    together = walker
+    if higher is not None:
+        together = Switching([walker, find_controller(higher, body, (higher, *allow))])
     scene = _scene_of(terrain, reading)
     goals = [] if waypoints is None else read_waypoints(waypoints)
     goals.append(parse_pose(goal, "--goal", STOPS))
     place = parse_pose(start, "--start")
     stands = standing_on(scene, body, [(place.x, place.y, place.yaw)])
-    physics = Walk(make_physics(body, 1, scene), walker)
+    physics = Walk(make_physics(body, 1, scene), together)
     proposed: ProposedPlanner | None = None
     if blind is None:
         height_map = errors.of(_map_of(terrain, reading))
@@ -115,6 +125,10 @@ def walk(
         require_start(measured_at_start(physics, stands), costs, walker.identity)
         planner = planner_of(proposal, model, costs, settings)
         proposed = planner if isinstance(planner, ProposedPlanner) else None
+        if isinstance(together, Switching):
+            given = [model, *(model_of(None, each) for each in together.controllers[1:])]
+            turns = InTurn(together.controllers, given, height_map, goals, settings, body)
+            planner = turns.planner()
         commander: Commander = PlanningCommander(planner, goals)
     else:
         commander = BlindCommander(walker.identity, goals, blind)
@@ -131,11 +145,12 @@ def walk(
     if log is not None:
         chosen = {
             **{"terrain": str(terrain), "goal": goal, "start": start, "blind": blind},
-            **{"proposal": proposal, "settings": asdict(settings), "map": asdict(errors)},
+            **{"proposal": proposal, "higher": higher},
+            **{"settings": asdict(settings), "map": asdict(errors)},
         }
         outcome = {"outcome": crossing.outcome, "time": crossing.time, "cause": crossing.cause}
         description = WalkDescription(
-            *(walker.identity, body.time_step, round(TICK / body.time_step), outcome, chosen),
+            *(together.identity, body.time_step, round(TICK / body.time_step), outcome, chosen),
             provenance=collect_provenance(sys.argv)[0],
         )
         write_walk_log(log, logger.made(footstep_arrays(crossing.footsteps), description))

@@ -124,6 +124,7 @@ def footstep_arrays(footsteps: tuple[WalkedFootstep, ...]) -> dict[str, np.ndarr
         "footstep_yaw": np.array([each.yaw for each in footsteps]),
         "footstep_feet": np.array([each.feet for each in footsteps]).reshape(-1, *feet),
         "footstep_planned": np.array(planned).reshape(-1, *feet),
+        "footstep_controller": np.array([each.controller for each in footsteps], dtype=np.str_),
     }
 
 

@@ -21,6 +21,7 @@ class WalkedFootstep:
         com: position of the centre of mass at its end [m].
         yaw: heading at its end [rad].
         planned: the footstep as it was planned; None without a planner, or if it was to stand.
+        controller: name of the controller that made it, "" without a planner.
     """
 
     time: float
@@ -31,6 +32,7 @@ class WalkedFootstep:
     com: Float[np.ndarray, "3"]
     yaw: float
     planned: PlannedFootstep | None
+    controller: str = ""
 
 
 def first_of(plan: FootstepPlan | None) -> PlannedFootstep | None:

@@ -54,6 +54,7 @@ from .search_states import Node as Node
 from .search_states import node_after as node_after
 from .search_states import start_node as start_node
 from .shipped_models import shipped_model as shipped_model
+from .swing_choice import SwingChoice as SwingChoice
 from .walking_state import Goal as Goal
 from .walking_state import WalkingState as WalkingState
 from .walking_state import require_goal as require_goal

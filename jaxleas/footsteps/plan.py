@@ -65,6 +65,7 @@ class FootstepPlan:
         expansions: number of states whose commands were tried.
         refused: number of footsteps refused, by reason.
         miss: refused landing that came nearest to a safe cell, if one was refused.
+        controller: name of the controller that is to walk it; "" where that is known elsewhere.
     """
 
     status: Status
@@ -74,6 +75,7 @@ class FootstepPlan:
     expansions: int
     refused: dict[Refusal, int] = field(default_factory=dict)
     miss: Miss | None = None
+    controller: str = ""
 
     @property
     def command(self) -> Float[np.ndarray, "3"]:

@@ -9,7 +9,8 @@ from jaxleas.footsteps.model_file import read_motion_model
 from jaxleas.footsteps.pose_text import parse_pose
 from jaxleas.footsteps.search import SearchSettings, plan_footsteps, settings_for
 from jaxleas.footsteps.search_costs import Cost
-from jaxleas.footsteps.state_file import read_state, write_plan
+from jaxleas.footsteps.shipped_models import shipped_model_of
+from jaxleas.footsteps.state_file import named_in_state, read_state, write_plan
 from jaxleas.footsteps.walking_state import require_goal, require_start
 from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
 
@@ -17,10 +18,10 @@ from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, requ
 def plan(
     terrain: Path,
     *,
-    models: Path,
     state: Path,
     goal: str,
     out: Path,
+    models: Path | None = None,
     horizon: int = 2,
     exact: bool = False,
     cost: Cost = "footsteps",
@@ -32,10 +33,11 @@ def plan(
 
     Args:
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
-        models: motion models of the controller, as `jaxleas gait fit` writes them.
         state: file of the measured state (docs/files.md).
         goal: pose to reach: X,Y or X,Y,YAW [m, rad].
         out: file of the plan (.json).
+        models: motion models of the controller, as `jaxleas gait fit` writes them; by default
+            those of the package for the state's controller and robot.
         horizon: number of footsteps to plan where the goal is farther.
         exact: search until no plan can be better, however long; always so up to two footsteps.
         cost: footsteps, or the thesis's greedy cost.
@@ -46,7 +48,9 @@ def plan(
     """
     if picture is not None:
         require_picture(picture)
-    model = read_motion_model(models)
+    model = (
+        shipped_model_of(*named_in_state(state)) if models is None else read_motion_model(models)
+    )
     start = read_state(state, model.controller)
     target = parse_pose(goal, "--goal")
     if reading.resolution is None and has_polygons(terrain):

@@ -17,7 +17,7 @@ from jaxleas.footsteps.search_costs import Cost, Found, SearchCosts
 from jaxleas.footsteps.search_states import Node, start_node
 from jaxleas.footsteps.walking_state import Goal, WalkingState, require_goal
 from jaxleas.footsteps.way_left import Strides, WayLeft
-from jaxleas.types import InputError
+from jaxleas.types import ControllerIdentity, InputError
 
 
 @dataclass(frozen=True)
@@ -98,6 +98,11 @@ class FootstepPlanner:
         self._expander = Expander(model, costs, self._settings.limits)
         self._strides = Strides.of(model, self._expander.commands)
 
+    @property
+    def controller(self) -> ControllerIdentity:
+        """Controller whose footsteps are planned."""
+        return self._expander.controller
+
     def plan(self, state: WalkingState, goal: Goal) -> FootstepPlan:
         """Return the footsteps from a measured state towards a goal.
 
@@ -142,6 +147,7 @@ class FootstepPlanner:
             expansions=found.expansions,
             refused=dict(self._expander.refused),
             miss=self._expander.miss,
+            controller=self.controller.name,
         )
 
 

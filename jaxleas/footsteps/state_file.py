@@ -30,6 +30,16 @@ class _StateFile:
     version: int = field(default=VERSION)
 
 
+def named_in_state(path: str | Path) -> tuple[str, str]:
+    """Return the names of controller and robot that a walking state is of.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+    found = read_typed(_StateFile, path, "walking state", VERSION)
+    return found.controller, found.robot
+
+
 def read_state(path: str | Path, controller: ControllerIdentity) -> WalkingState:
     """Read a walking state.
 

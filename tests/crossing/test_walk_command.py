@@ -106,6 +106,8 @@ def test_where_no_command_is_safe_it_stands_and_says_why(tmp_path, capsys):
         (("--goal", "1,0", "--seconds", "0"), "a walk of 0 s: give more than 0 s"),
         (("--goal", "1,0", "--shift", "-1"), "shift -1 m"),
         (("--goal", "1,0", "--blind", "0"), "blind"),
+        (("--goal", "1,0", "--higher", "trot_high", "--blind", "0.4"), "--higher chooses a contr"),
+        (("--goal", "1,0", "--higher", "trot_low"), "no controller 'trot_low'|trot_low"),
     ],
 )
 def test_what_cannot_be_walked_is_refused(scene, options, message):
@@ -138,6 +140,26 @@ def test_another_controller_walks_on_its_own_models(scene, tmp_path):
     assert made.description.controller.name == "trot_quick"
     landed = made.footsteps["footstep_planned"] - made.footsteps["footstep_feet"]
     assert np.nanmedian(np.linalg.norm(landed[..., :2], axis=2)) < 0.03
+
+
+@pytest.mark.slow
+def test_high_swings_take_over_where_the_low_ones_clear_no_step(tmp_path):
+    steps = {
+        "floor": rectangle(-1.2, 1.0, -1.0, 1.0),
+        "step": rectangle(1.0, 3.0, -1.0, 1.0, 0.08),
+    }
+    write_scene(tmp_path / "step.json", Scene(steps))
+    file = tmp_path / "walk.npz"
+    options = ("--higher", "trot_high", "--seconds", "30", "--log", str(file))
+    walk(tmp_path / "step.json", "--goal", "1.9,0,0", *options)
+    made = read_walk_log(file)
+    assert made.description.controller.name == "trot or trot_high"
+    walked_by = made.footsteps["footstep_controller"]
+    assert set(walked_by) == {"trot", "trot_high"}
+    high = made.footsteps["footstep_feet"][:, :, 2] > 0.06
+    climbs = np.diff(high.sum(axis=1), prepend=0) > 0
+    assert (walked_by[climbs] == "trot_high").all()
+    assert high[-1].all()
 
 
 def test_models_of_another_controller_are_refused(scene, tmp_path):

@@ -95,6 +95,22 @@ def world(folder, tmp_path):
     ]
 
 
+@pytest.mark.parametrize("controller", ["trot", "trot_high", "trot_quick"])
+def test_models_of_the_package_are_taken_for_the_controller_of_the_state(
+    world, tmp_path, controller
+):
+    write_json(tmp_path / "state.json", STATE | {"controller": controller, "robot": "anymal_b"})
+    shipped = [each for each in world if each != "--models" and not each.endswith("model.npz")]
+    cli.run([*shipped, "--goal", "1.5,0,0"])
+    assert len(json.loads((tmp_path / "plan.json").read_text())["footsteps"]) == 2
+
+
+def test_a_controller_of_which_none_are_shipped_is_said(world, tmp_path):
+    shipped = [each for each in world if each != "--models" and not each.endswith("model.npz")]
+    with pytest.raises(InputError, match="no motion models of controller made up on probe"):
+        cli.run([*shipped, "--goal", "1.5,0,0"])
+
+
 def test_a_plan_is_written_and_said(world, tmp_path, capsys):
     cli.run([*world, "--goal", "1.5,0,0", "--picture", str(tmp_path / "costs.png")])
     written = json.loads((tmp_path / "plan.json").read_text())
