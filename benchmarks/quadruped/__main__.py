@@ -4,8 +4,9 @@ python -m benchmarks.quadruped PART ... [--starts N] [--held-out]
 
 Parts: stairs, gaps, noisy, waypoints, quick (stairs_1 by trot_quick), in_turn (high steps by two
 controllers), stairs_blind, gaps_blind, waypoints_blind, plans (times, from starts for tuning),
-models, which needs --scores of `jaxleas gait fit`, and public, which needs the folder of the public
-footsteps as --public. Each part replaces its own figures in benchmarks/results/quadruped.json.
+proposal (the shipped one in the planner's place), models, which needs --scores of `jaxleas gait
+fit`, and public, which needs the folder of the public footsteps as --public. Each part replaces its
+own figures in benchmarks/results/quadruped.json.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from benchmarks.contacts.rows import Row
 from benchmarks.measurements import read_measurements, this_machine, write_measurements
 from benchmarks.quadruped.models import model_rows
 from benchmarks.quadruped.plans import plan_rows
+from benchmarks.quadruped.proposals import planned_before, proposal_rows
 from benchmarks.quadruped.public import public_rows
 from benchmarks.quadruped.walks import (
     Crossed,
@@ -134,6 +136,12 @@ def _plans(given: argparse.Namespace) -> Iterator[Row]:
     yield from plan_rows((*STAIRS, *GAPS), given.starts)
 
 
+def _proposal(given: argparse.Namespace) -> Iterator[Row]:
+    parts = {"stairs_success": len(STAIRS), "gaps_success": len(GAPS)}
+    planned = planned_before(given.out, {name: n * given.starts for name, n in parts.items()})
+    yield from proposal_rows((*STAIRS, *GAPS), *_count(given), planned, _told)
+
+
 def _models(given: argparse.Namespace) -> Iterator[Row]:
     if given.scores is None:
         raise InputError("models: give --scores, the scores.json of jaxleas gait fit")
@@ -181,6 +189,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "gaps_blind": _gaps_blind,
     "waypoints_blind": _waypoints_blind,
     "plans": _plans,
+    "proposal": _proposal,
     "models": _models,
     "public": _public,
 }

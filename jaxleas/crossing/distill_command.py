@@ -6,7 +6,8 @@ from pathlib import Path
 
 from jaxleas.configuration import Allow
 from jaxleas.controllers import DEFAULT_CONTROLLER, TICK, ControllerName, find_controller
-from jaxleas.crossing.distilling import Distillation, DistillSettings, with_provenance
+from jaxleas.crossing.distill_rounds import DistillSettings
+from jaxleas.crossing.distilling import Distillation, with_provenance
 from jaxleas.crossing.lesson_walk import School
 from jaxleas.crossing.walk_planner import model_of
 from jaxleas.crossing.walk_settings import WalkSettings

@@ -16,6 +16,7 @@ from jaxleas.footsteps.framed_map import FramedMap
 from jaxleas.footsteps.model import MOTION, MotionModel
 from jaxleas.footsteps.search_states import Node
 from jaxleas.footsteps.walking_state import Goal
+from jaxleas.types import InputError
 
 AHEAD = np.arange(-2, 13) * 0.05
 """Where the ground is looked at ahead of a foot [m]."""
@@ -48,11 +49,19 @@ class ProposalSight:
         model: motion models.
         costs: foot cost map.
         commands: commands to choose from.
+
+    Raises:
+        InputError: the pairs of the controller have different numbers of feet.
     """
 
     def __init__(
         self, model: MotionModel, costs: FootCostMap, commands: Float[np.ndarray, "C 3"]
     ) -> None:
+        if len({len(pair) for pair in model.controller.pairs}) > 1:
+            raise InputError(
+                f"controller {model.controller.name} swings different numbers of feet in turn"
+                f" ({', '.join(model.controller.pair_names)}): a proposal needs one number"
+            )
         self._model = model
         self._commands = commands
         self._largest = np.maximum(model.controller.max_speeds, 1e-9)

@@ -35,13 +35,17 @@ SURE = 0.3
 """Probability of a proposed command below which the planner is asked."""
 
 
+LOOKED_AT = 8
+"""Next footsteps, those that land farthest from edges, whose swings are looked at."""
+
+
 class ProposedPlanner:
     """Proposes the next footstep, and plans where the proposal is unsure or not safe.
 
     A proposed command is taken if it is probable enough (the softmax of the scores), and if the
     footstep that the motion models predict for it passes every check that the search has for its
-    first footstep. Otherwise the planner searches; it alone concedes some of the buffer, and says
-    to stand.
+    first footstep, and another safe one follows it. Otherwise the planner searches; it alone
+    concedes some of the buffer, and says to stand.
 
     Args:
         scorer: what scores commands.
@@ -84,9 +88,10 @@ class ProposedPlanner:
         self.asked += 1
         if not goal.is_met_by(state):
             node = start_node(state, self._costs)
-            proposed = self._proposed(node, self._scorer.scores(self._sight.of(node, goal)))
+            proposed = self._proposed(node, goal)
             if proposed is not None:
-                return FootstepPlan("horizon", (proposed,), np.inf, np.inf, 1)
+                name = self._expander.controller.name
+                return FootstepPlan("horizon", (proposed,), np.inf, np.inf, 1, controller=name)
             self.searched += 1
         return self._planner.plan(state, goal)
 
@@ -99,27 +104,41 @@ class ProposedPlanner:
             f" {self.unsure} unsure, {unsafe} not safe"
         )
 
-    def _proposed(self, node: Node, scores: Float[np.ndarray, " C"]) -> PlannedFootstep | None:
+    def _proposed(self, node: Node, goal: Goal) -> PlannedFootstep | None:
         """Return the footstep of the best command; None if it is unsure or not safe."""
+        scores = self._scorer.scores(self._sight.of(node, goal))
         chosen = int(np.argmax(scores))
         if self._sure is None:
             return self._bare(node, chosen)
         if 1.0 / np.exp(scores - scores[chosen]).sum() < self._sure:
             self.unsure += 1
             return None
-        return self._checked(node, chosen)
+        after = self._checked(node, chosen)
+        if after is None or not (_is_met_by(goal, after) or self._leads_on(after)):
+            return None
+        return PlannedFootstep(node.pair, after.command, after.com, after.yaw, after.feet)
 
-    def _checked(self, node: Node, chosen: int) -> PlannedFootstep | None:
-        """Return the footstep of a command, None if it is not safe."""
+    def _checked(self, node: Node, chosen: int) -> Node | None:
+        """Return the state after a command's footstep, None if that is not safe."""
         children = self._expander.children([node])
         (rows,) = np.nonzero(children.command == chosen)
         if not len(rows) or not self._expander.swings_clear(children, rows)[0]:
             return None
-        after = self._expander.child(children, int(rows[0]), 0.0)
-        return PlannedFootstep(node.pair, after.command, after.com, after.yaw, after.feet)
+        return self._expander.child(children, int(rows[0]), 0.0)
+
+    def _leads_on(self, after: Node) -> bool:
+        """Return whether a state has a safe footstep: a robot at speed cannot just stop."""
+        children = self._expander.children([after])
+        rows = np.argsort(children.near, kind="stable")[:LOOKED_AT]
+        return len(rows) > 0 and bool(self._expander.swings_clear(children, rows).any())
 
     def _bare(self, node: Node, chosen: int) -> PlannedFootstep:
         """Return a command with nothing said of where it leads."""
         return PlannedFootstep(
             node.pair, self._expander.commands[chosen], node.com, node.yaw, node.feet
         )
+
+
+def _is_met_by(goal: Goal, node: Node) -> bool:
+    yaw = np.array([node.yaw])
+    return bool(goal.is_met(node.com[None], yaw, node.velocity[None, :2])[0])

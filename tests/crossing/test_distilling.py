@@ -9,7 +9,8 @@ import pytest
 from jaxleas import cli
 from jaxleas.controllers import find_controller
 from jaxleas.crossing import COURSES, NotReachedError, WalkSettings, distilling, make_course
-from jaxleas.crossing.distilling import Distillation, DistillSettings
+from jaxleas.crossing.distill_rounds import DistillSettings
+from jaxleas.crossing.distilling import Distillation
 from jaxleas.crossing.lesson_file import LessonNotes, LessonRows, read_lesson, write_lesson
 from jaxleas.crossing.lesson_walk import DEEP, Pupil, School, Teacher
 from jaxleas.crossing.lessons import make_lesson
@@ -23,6 +24,7 @@ from jaxleas.footsteps import (
     motion_digest,
     read_proposal,
     shipped_model,
+    write_proposal,
 )
 from jaxleas.physics import load_body
 from jaxleas.terrain import HeightMap, Scene, write_scene
@@ -187,9 +189,34 @@ def floor(tmp_path_factory):
     return file
 
 
+def test_a_walk_asks_the_shipped_proposal(floor, capsys):
+    goal = ("--goal", "0.4,0,0")
+    cli.run(["gait", "walk", "--terrain", str(floor), *goal, "--proposal", "shipped"])
+    said = capsys.readouterr().out
+    assert "reached" in said
+    assert "proposals; the planner searched for" in said
+
+
+def test_proposals_of_others_are_refused(floor, tmp_path):
+    shipped = read_proposal_of_trot()
+    other = replace(shipped, controller=replace(shipped.controller, name="trot_high"))
+    write_proposal(tmp_path / "other.npz", other)
+    walk = ["gait", "walk", "--terrain", str(floor), "--goal", "0.4,0", "--proposal"]
+    with pytest.raises(InputError, match=r"other\.npz is of another controller than the walk"):
+        cli.run([*walk, str(tmp_path / "other.npz")])
+    with pytest.raises(InputError, match="a blind walk asks no proposal"):
+        cli.run([*walk, "shipped", "--blind", "0.4"])
+
+
+def read_proposal_of_trot():
+    from jaxleas.footsteps import shipped_proposal
+
+    return shipped_proposal(find_controller("trot", load_body("anymal_b")).identity)
+
+
 @pytest.mark.slow
 def test_a_small_distillation_walks_learns_and_is_used(floor, tmp_path, capsys):
-    small = "--rounds 1 --lessons 8 --more 1 --robots 2 --seconds 1.2 --epochs 2"
+    small = "--rounds 1 --lessons 8 --more 1 --robots 1 --seconds 0.8 --epochs 1"
     out = tmp_path / "distilled"
     cli.run(["gait", "distill", "--out", str(out), *small.split()])
     assert {"proposal.npz", "proposal.onnx"} <= {each.name for each in out.iterdir()}

@@ -1,6 +1,7 @@
 """Learned proposals: what they see, how they score, and what is done when they are wrong."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from jaxleas.footsteps import (
     Choices,
     FitSettings,
+    FootCostMap,
     FootstepPlanner,
     Goal,
     Proposal,
@@ -23,6 +25,7 @@ from jaxleas.footsteps import (
     motion_digest,
     node_after,
     read_proposal,
+    shipped_model,
     shipped_proposal,
     start_node,
     write_proposal,
@@ -45,7 +48,7 @@ def drawn(sizes=(100, 99), layers=(12, 5), seed=0, **known):
     rng = np.random.default_rng(seed)
     shapes = {"of_command": (sizes[0], layers[0]), "of_state": (sizes[1], layers[0])}
     shapes |= {"bias": layers[:1], "hidden": layers, "hidden_bias": layers[1:], "last": layers[1:]}
-    weights = {
+    weights: dict[str, Any] = {
         name: rng.normal(size=shape, scale=0.3).astype(np.float32) for name, shape in shapes.items()
     }
     return Proposal(**known, **weights)
@@ -168,6 +171,19 @@ def test_the_planner_is_asked_where_the_proposal_is_not_safe(model):
     np.testing.assert_array_equal(bare.plan(state, GOAL).command, commands[fast])
 
 
+def test_the_planner_is_asked_where_the_proposal_leads_nowhere(model):
+    """The first landing at full speed is on the ground, the next ones are all beyond its end."""
+    fast = np.array([0.8, 0.0, 0.0])
+    state = replace(standing(), command=fast, com_velocity=fast)
+    chosen = int(model.commands()[:, 0].argmax())
+    for end, searched in ((0.8, 1), (2.5, 0)):
+        costs, settings = costs_of(ground(gaps=[(end, 3.0)])), SearchSettings(1, jump=0.2)
+        assert chosen in Expander(model, costs).children([start_node(state, costs)]).command
+        planner = ProposedPlanner(Favourite(chosen), model, costs, settings)
+        planner.plan(state, GOAL)
+        assert (planner.unsure, planner.searched) == (0, searched)
+
+
 def test_the_planner_is_asked_where_the_proposal_is_unsure(model):
     """Two commands of equal score have a probability of a half each."""
 
@@ -244,6 +260,26 @@ def test_a_damaged_proposal_is_refused(model, tmp_path):
         read_proposal(file)
 
 
+def test_the_shipped_proposal_is_of_the_shipped_models():
+    from jaxleas.controllers import find_controller
+    from jaxleas.physics import load_body
+
+    model = shipped_model(find_controller("trot", load_body("anymal_b")).identity)
+    proposal = shipped_proposal(model.controller)
+    proposal.require_fits(model, "the package's proposal")
+    costs = FootCostMap.of(ground(), 0.03)
+    inputs = sees(model, costs, standing(), GOAL)
+    assert np.isfinite(proposal.scores(inputs)).all()
+
+
 def test_no_proposal_is_shipped_for_others(model):
     with pytest.raises(InputError, match="no proposal for controller made up"):
         shipped_proposal(model.controller)
+
+
+def test_a_gait_of_different_numbers_of_feet_is_refused(model):
+    crawl = replace(model.controller, pairs=((0,), (3,), (1, 2)))
+    weights = tuple(np.zeros((19, 7 + 2 * len(pair))) for pair in crawl.pairs)
+    crawling = replace(model, controller=crawl, weights=weights)
+    with pytest.raises(InputError, match=r"different numbers of feet in turn \(LF, RH, RF/LH\)"):
+        ProposalSight(crawling, costs_of(ground()), model.commands())
