@@ -15,6 +15,8 @@ from jaxleas.types import InputError
 
 CLIMBS = 0.02
 """Rise or drop of a footstep from which on it climbs [m]."""
+STEEP, STEEPER = 0.065, 0.6
+"""Rise or drop from which on a footstep is slower still [m], and its speed over that of others."""
 SWAYS = 0.5
 """Share of the largest forward speed up to which a robot does not sway, however it changes."""
 
@@ -72,7 +74,7 @@ class Expander:
                 f"no command is as slow as {fastest:g} of the largest speed; the slowest is"
                 f" {shares.min(initial=1.0):g} of it"
             )
-        self._climbs = shares[kept] <= climbing + 1e-9
+        self._largest_shares = shares[kept]
         self._climbing = climbing * model.controller.max_speeds[0] if climbing < 1.0 else np.inf
         self.refused: dict[Refusal, int] = {}
         self.miss: Miss | None = None
@@ -117,7 +119,9 @@ class Expander:
         low = rise <= self.controller.swing_height
         kept, near, height = self._allowed("step height", kept, low), near[low], height[low]
         speed = np.hypot(velocity[kept, 0], velocity[kept, 1])
-        slow = self._climbs[command[kept]] & (speed <= self._climbing)
+        slower = np.where((rise[low] > STEEP) & (self._limits.climbing < 1.0), STEEPER, 1.0)
+        slow = self._largest_shares[command[kept]] <= slower * self._limits.climbing + 1e-9
+        slow &= speed <= slower * self._climbing
         slow |= rise[low] <= CLIMBS
         kept, near, height = self._allowed("climbing", kept, slow), near[slow], height[slow]
         landings = np.concatenate([places[kept], height[..., None]], axis=-1)

@@ -16,7 +16,9 @@ from jaxleas.footsteps import (
     require_start,
     settings_for,
 )
+from jaxleas.footsteps.expansion import Expander, Limits
 from jaxleas.footsteps.framed_map import ball_heights
+from jaxleas.footsteps.search_states import start_node
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError
 from tests.footsteps.brute_force import best_cost, distance_of, step
@@ -171,6 +173,23 @@ def test_a_step_above_the_swing_is_refused(models):
         state = step_state(models[1], high, state, plan.footsteps[0])
         assert state.feet[:, 2].max() == 0.0
     assert plan.refused["step height"] + plan.refused["landing"] > 0
+
+
+@pytest.mark.parametrize(("rise", "largest"), [(0.05, 0.5), (0.08, 0.3)])
+def test_the_higher_a_foot_steps_the_slower_it_does(models, rise, largest):
+    model = replace(models[0], controller=replace(IDENTITY, swing_height=0.10))
+    costs = costs_of(ground(rise=rise, at=0.37))
+    node = start_node(replace(standing(), com_velocity=SLOW, command=SLOW), costs)
+
+    def fastest(limits):
+        expander = Expander(model, costs, limits)
+        children = expander.children([node])
+        climbs = np.isclose(children.landings[..., 2], rise).any(axis=1)
+        shares = np.abs(expander.commands / np.array(IDENTITY.max_speeds)).max(axis=1)
+        return shares[children.command[climbs]].max()
+
+    assert largest - 0.21 < fastest(Limits(climbing=0.5)) <= largest + 1e-9
+    assert fastest(Limits()) > 0.5
 
 
 def test_a_foot_that_steps_down_clears_the_edge_with_its_whole_ball(models):
