@@ -58,7 +58,8 @@ class Measurement(Strict):
 
     name: str
     value: float | None
-    """Median of the runs; null if half of them never got there."""
+    """Median of the runs, or the worst where the name says so; null if half of them never got
+    there."""
     unit: str
     better: Better
     runs: tuple[float | None, ...]

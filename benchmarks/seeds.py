@@ -1,10 +1,11 @@
 """Train several seeds from random weights and judge each: the worst and the median of them.
 
 python -m benchmarks.seeds [CONFIG] [--seeds 0 1 2 3 4] [--runs DIR] [--out SEEDS.json]
-                           [--suites NAME ...] [--starts N]
+                           [--cells CELLS.json] [--suites NAME ...] [--starts N]
 
-After an interruption the same command goes on: trainings resume, and what was judged is kept, in
-the run folders DIR/seed_N.
+SEEDS.json holds one row per suite, the worst cell of the worst seed; CELLS.json every cell of every
+seed. After an interruption the same command goes on: trainings resume, and what was judged is
+kept, in the run folders DIR/seed_N.
 """
 
 import argparse
@@ -18,7 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.measurements import this_machine
+from benchmarks.measurements import this_machine, write_measurements
+from benchmarks.seed_rows import rows_of_cells
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.evaluation import SUITES, Evaluation, now, read_evaluation
 from jaxleas.files import write_json
@@ -29,6 +31,9 @@ ROOT = Path(__file__).resolve().parents[1]
 JUDGED = ("transitions", "hole", "wall", "circuit", "dead_end", "limits")
 STARTS = 1000
 """Starts in each cell."""
+MOST_AT_LIMITS = 200
+"""Starts in each cell of limits, at most: each ten need the truth of another scene, which takes a
+third of a second, and all of their configurations are judged on its polygons."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,8 @@ def main(arguments: Sequence[str]) -> None:
         "seconds": {str(each.seed): each.seconds for each in trained},
         "cells": cells_of(trained),
     }
-    write_json(given.out, document)
+    write_json(given.cells, document)
+    write_measurements(given.out, rows_of_cells(document["cells"], document["machine"]))
     print(table_of(document))
 
 
@@ -92,11 +98,17 @@ def train_and_judge(config: Path, run: Path, seed: int, given: argparse.Namespac
     if load_run_config(run / "config.yaml").seed != seed:
         raise InputError(f"{run} holds another seed than {seed}: give another --runs DIR")
     for suite in given.suites:
-        if kept(run, suite, given.starts) is None:
-            starts = ("--starts", given.starts, "--no-baseline")
-            _run("-m", "jaxleas.cli", "evaluate", run, "--suite", suite, *starts)
-    found = [kept(run, suite, given.starts) for suite in given.suites]
+        starts = starts_in(suite, given.starts)
+        if kept(run, suite, starts) is None:
+            options = ("--starts", starts, "--no-baseline")
+            _run("-m", "jaxleas.cli", "evaluate", run, "--suite", suite, *options)
+    found = [kept(run, suite, starts_in(suite, given.starts)) for suite in given.suites]
     return Trained(seed, rows_of(run)[-1]["seconds"], tuple(each for each in found if each))
+
+
+def starts_in(suite: str, asked: int) -> int:
+    """Return the number of starts in each cell of a suite, of which `asked` are asked for."""
+    return min(asked, MOST_AT_LIMITS) if suite == "limits" else asked
 
 
 def rows_of(run: Path) -> list[dict[str, Any]]:
@@ -192,7 +204,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--runs", type=lambda text: Path(text).absolute(), default=ROOT / "runs")
     parser.add_argument("--suites", nargs="+", choices=SUITES, default=JUDGED)
     parser.add_argument("--starts", type=int, default=STARTS)
-    parser.add_argument("--out", type=Path, default=ROOT / "benchmarks/results/seeds.json")
+    results = ROOT / "benchmarks/results"
+    parser.add_argument("--out", type=Path, default=results / "seeds.json")
+    parser.add_argument("--cells", type=Path, default=results / "seeds_cells.json")
     return parser
 
 

@@ -5,6 +5,8 @@ import json
 import pytest
 
 from benchmarks import seeds
+from benchmarks.measurements import read_measurements
+from benchmarks.seed_rows import rows_of_cells
 from jaxleas.cli_guard import run_guarded
 from jaxleas.configuration import to_yaml
 from jaxleas.evaluation import CellResult, Evaluation, write_evaluation
@@ -70,6 +72,7 @@ def test_an_interrupted_benchmark_goes_on_where_it_stopped(commands, tmp_path, c
     arguments = [
         *(str(SMOKE), "--seeds", "0", "1", "--runs", str(tmp_path / "runs")),
         *("--suites", "hole", "--starts", "40", "--out", str(tmp_path / "seeds.json")),
+        *("--cells", str(tmp_path / "cells.json")),
     ]
     assert run_guarded(lambda: seeds.main(arguments)) == 2
     assert not (tmp_path / "seeds.json").exists()
@@ -77,7 +80,9 @@ def test_an_interrupted_benchmark_goes_on_where_it_stopped(commands, tmp_path, c
     assert run_guarded(lambda: seeds.main(arguments)) == 0
     again = commands[before:]
     assert [each[:2] for each in again] == [["train.py", "--resume"], ["-m", "jaxleas.cli"]]
-    document = json.loads((tmp_path / "seeds.json").read_text())
+    (hole,) = read_measurements(tmp_path / "seeds.json")
+    assert (hole.name, hole.value, hole.runs) == ("hole_worst", 90.0, (90.0, 91.0))
+    document = json.loads((tmp_path / "cells.json").read_text())
     (row,) = document["cells"]
     assert row["worst_success"] == 0.9
     assert row["median_success"] == pytest.approx(0.905)
@@ -92,6 +97,36 @@ def test_where_the_policy_should_stop_staying_valid_is_success(tmp_path):
     trained = [seeds.Trained(seed, 1.0, (found,)) for seed in (0, 1)]
     (row,) = seeds.cells_of(trained)
     assert row["worst_success"] == pytest.approx(0.96)
+
+
+def test_rows_are_of_the_worst_cell_of_the_worst_seed(tmp_path):
+    (tmp_path / "policy.npz").write_bytes(b"policy")
+    found = [
+        [
+            evaluation(
+                tmp_path, "dead_end", cell("void", 0.0, 0.01, "stop"), cell("wall", 0.0, bad)
+            ),
+            evaluation(
+                tmp_path,
+                "limits",
+                cell("gap_crossable", good, 0.0),
+                cell("gap_hopeless", 0.0, 0.02, "stop"),
+            ),
+        ]
+        for bad, good in ((0.0, 0.9), (0.03, 0.95))
+    ]
+    trained = [seeds.Trained(seed, 1.0, tuple(each)) for seed, each in enumerate(found)]
+    rows = {row.name: row for row in rows_of_cells(seeds.cells_of(trained), "a machine")}
+    assert set(rows) == {
+        "dead_end_0_worst_invalid",
+        "limits_worst_invalid",
+        "limits_crossable_worst",
+    }
+    assert rows["dead_end_0_worst_invalid"].runs == (1.0, 3.0)
+    assert rows["dead_end_0_worst_invalid"].value == 3.0
+    assert rows["limits_worst_invalid"].value == 2.0
+    assert rows["limits_crossable_worst"].value == 90.0
+    assert {row.machine for row in rows.values()} == {"a machine"}
 
 
 def test_an_evaluation_of_another_policy_or_of_fewer_starts_does_not_count(tmp_path):
