@@ -75,7 +75,7 @@ def _gaps(given: argparse.Namespace) -> Iterator[Row]:
 
 
 def _noisy(given: argparse.Namespace) -> Iterator[Row]:
-    found = [_told("stairs_1", crossed(make_course("stairs_1"), *_count(given), noisy=True))]
+    found = [_shown("stairs_1", crossed(make_course("stairs_1"), *_count(given), noisy=True))]
     yield _success("noisy_success", found, NOISY)
 
 
@@ -86,7 +86,7 @@ def _waypoints(given: argparse.Namespace) -> Iterator[Row]:
 
 
 def _waypoints_blind(given: argparse.Namespace) -> Iterator[Row]:
-    found = [_told(WAYPOINTS, crossed_blind(make_course(WAYPOINTS), *_count(given), BLIND_SPEEDS))]
+    found = [_shown(WAYPOINTS, crossed_blind(make_course(WAYPOINTS), *_count(given), BLIND_SPEEDS))]
     yield _success("waypoints_blind_success", found, None)
     yield Row("waypoints_blind_unsafe_worst", _starts(found), [worst_unsafe(found)])
 
@@ -94,7 +94,7 @@ def _waypoints_blind(given: argparse.Namespace) -> Iterator[Row]:
 def _quick(given: argparse.Namespace) -> Iterator[Row]:
     """Yield the figures of one course that a controller with another cycle and touchdown walks."""
     course = make_course(STAIRS[0])
-    found = [_told(f"{STAIRS[0]}, {QUICK}", crossed(course, *_count(given), controller=QUICK))]
+    found = [_shown(f"{STAIRS[0]}, {QUICK}", crossed(course, *_count(given), controller=QUICK))]
     yield _success(f"{STAIRS[0]}_success_{QUICK}", found, SUCCESS)
     yield Row(
         f"{STAIRS[0]}_unsafe_worst_{QUICK}", _starts(found), [worst_unsafe(found)], limit=UNSAFE
@@ -103,20 +103,20 @@ def _quick(given: argparse.Namespace) -> Iterator[Row]:
 
 def _in_turn(given: argparse.Namespace) -> Iterator[Row]:
     """Yield success where a controller of high swings takes over, and how rarely it does."""
-    found = [_told(HIGH, crossed_in_turn(make_course(HIGH), *_count(given), IN_TURN))]
+    found = [_shown(HIGH, crossed_in_turn(make_course(HIGH), *_count(given), IN_TURN))]
     yield _success("stairs_high_success", found, SUCCESS)
     yield Row("stairs_high_unsafe_worst", _starts(found), [worst_unsafe(found)])
     yield Row(
         "stairs_high_share", f"% of footsteps by {IN_TURN[1]}", [found[0].share_of(IN_TURN[1])]
     )
-    alone = [_told(f"{HIGH}, {IN_TURN[0]} alone", crossed(make_course(HIGH), *_count(given)))]
+    alone = [_shown(f"{HIGH}, {IN_TURN[0]} alone", crossed(make_course(HIGH), *_count(given)))]
     yield _success("stairs_high_success_low_alone", alone, None)
 
 
 def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
     speeds = (BLIND_STAIRS_SPEED,)
     found = [
-        _told(name, crossed_blind(make_course(name), *_count(given), speeds)) for name in STAIRS
+        _shown(name, crossed_blind(make_course(name), *_count(given), speeds)) for name in STAIRS
     ]
     yield _success("stairs_blind_success", found, None)
     yield Row("stairs_blind_unsafe_worst", _starts(found), [worst_unsafe(found)])
@@ -124,7 +124,7 @@ def _stairs_blind(given: argparse.Namespace) -> Iterator[Row]:
 
 def _gaps_blind(given: argparse.Namespace) -> Iterator[Row]:
     found = [
-        _told(name, crossed_blind(make_course(name), *_count(given), BLIND_SPEEDS))
+        _shown(name, crossed_blind(make_course(name), *_count(given), BLIND_SPEEDS))
         for name in BLIND_GAPS
     ]
     yield _success("gaps_blind_success", found, None)
@@ -139,7 +139,7 @@ def _plans(given: argparse.Namespace) -> Iterator[Row]:
 def _proposal(given: argparse.Namespace) -> Iterator[Row]:
     parts = {"stairs_success": len(STAIRS), "gaps_success": len(GAPS)}
     planned = planned_before(given.out, {name: n * given.starts for name, n in parts.items()})
-    yield from proposal_rows((*STAIRS, *GAPS), *_count(given), planned, _told)
+    yield from proposal_rows((*STAIRS, *GAPS), *_count(given), planned, _shown)
 
 
 def _models(given: argparse.Namespace) -> Iterator[Row]:
@@ -155,7 +155,7 @@ def _public(given: argparse.Namespace) -> Iterator[Row]:
 
 
 def _crossed(given: argparse.Namespace, names: Sequence[str]) -> list[Crossed]:
-    return [_told(name, crossed(make_course(name), *_count(given))) for name in names]
+    return [_shown(name, crossed(make_course(name), *_count(given))) for name in names]
 
 
 def _count(given: argparse.Namespace) -> tuple[int, int]:
@@ -163,7 +163,7 @@ def _count(given: argparse.Namespace) -> tuple[int, int]:
     return given.starts, HELD_OUT_SEED if given.held_out else EVALUATION_SEED
 
 
-def _told(name: str, found: Crossed) -> Crossed:
+def _shown(name: str, found: Crossed) -> Crossed:
     print(f"{name}: {found.endings}\n{found.counts.in_words()}", flush=True)
     return found
 

@@ -31,7 +31,7 @@ from jaxleas.types import InputError
 
 SHARE, MICROSECONDS = 95.0, 50.0  # this project's own targets [%], [us]
 REPEATS, ANSWERS = 3, 5000
-Told = Callable[[str, Crossed], Crossed]
+Show = Callable[[str, Crossed], Crossed]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Proposed:
 
 
 def proposal_rows(
-    courses: Sequence[str], starts: int, seed: int, planned: int, told: Told
+    courses: Sequence[str], starts: int, seed: int, planned: int, show: Show
 ) -> Iterator[Row]:
     """Yield the proposal's share of the planner's success, and the times of its answers.
 
@@ -62,17 +62,17 @@ def proposal_rows(
         starts: number of starts on each.
         seed: seed of the starts.
         planned: number of these starts from which the planner reaches its goal.
-        told: function that is told of each course, and returns what it is told.
+        show: function that shows what came of a course, and returns it.
     """
     where = f"% of the planner's {planned} of {len(courses) * starts}"
-    checked = proposed_on(courses, starts, seed, SURE, told)
+    checked = proposed_on(courses, starts, seed, SURE, show)
     yield Row("proposal_success", where, [_share(checked, planned)], limit=SHARE, better="higher")
     asked = sum(each.asked for each in checked.planners)
     searched = sum(each.searched for each in checked.planners)
     yield Row("proposal_searched", f"% of {asked} plans", [100.0 * searched / max(asked, 1)])
     worst = max(float(np.max(each.counts.unsafe_share)) for each in checked.found)
     yield Row("proposal_unsafe_worst", "% of landings", [worst])
-    alone = proposed_on(courses, starts, seed, None, told)
+    alone = proposed_on(courses, starts, seed, None, show)
     yield Row("proposal_alone_success", where, [_share(alone, planned)], better="higher")
     yield from time_rows(courses[0])
 
@@ -99,7 +99,7 @@ def proposed_on(
     starts: int,
     seed: int,
     sure: float | None,
-    told: Told,
+    show: Show,
     proposal: Proposal | None = None,
 ) -> Proposed:
     """Return what became of robots whose commands a proposal chooses; by default the shipped one.
@@ -109,7 +109,7 @@ def proposed_on(
         starts: number of starts on each.
         seed: seed of the starts.
         sure: least probability of commands that are taken; None for the network alone.
-        told: function that is told of each course.
+        show: function that shows what came of a course, and returns it.
         proposal: proposal.
     """
     found, planners = [], []
@@ -120,7 +120,7 @@ def proposed_on(
         session = ProposalSession(chosen)
         planner = ProposedPlanner(session, model, costs, WalkSettings().search, sure)
         made = crossed(course, starts, seed, watched=lambda _, planner=planner: planner)
-        found.append(told(f"{name}, {'alone' if sure is None else 'checked'}", made))
+        found.append(show(f"{name}, {'alone' if sure is None else 'checked'}", made))
         planners.append(planner)
         print(planner.in_words(), flush=True)
     return Proposed(found, planners)

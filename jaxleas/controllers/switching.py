@@ -35,7 +35,7 @@ class Switching:
         controllers: controllers of one robot with the same feet, pairs, largest speeds and period.
 
     Attributes:
-        identity: that of the first, with the names of all.
+        identity: identity of the first controller, with the names of all.
         period: time between two decisions [s].
 
     Raises:
