@@ -36,9 +36,39 @@ def feel(feelers, terrain, position, yaw):
     ):
         middle = position[:2] + (ahead, left) @ turned(yaw)
         height = terrain(*(middle + np.array(points) @ turned(yaw + turn)).T) - position[2]
-        on_ground = max(min(height[i] - low, high - height[i]) for i, low, high in reach)
-        felt.append(min(on_ground, *(bottom - height[i] for i, bottom in free)))
+        felt.append(margin_of({"reach": reach, "free": free}, height))
     return np.clip(felt, *feelers["clip"])
+
+
+def margin_of(terms, height):
+    """Return the margin [m] of reach and room from the heights [m] at the points they name."""
+    on_ground = max(min(height[i] - low, high - height[i]) for i, low, high in terms["reach"])
+    return min(on_ground, *(bottom - height[i] for i, bottom in terms["free"]))
+
+
+def margins(guard, terrain, position, yaw):
+    """Return the margins [m] of the guard's conditions, and of those with room to spare."""
+    places = position[:2] + np.array(guard["points"]) @ turned(yaw)
+    height = terrain(*places.T) - position[2]
+    return margin_of(guard["valid"], height), margin_of(guard["spared"], height)
+
+
+def can_stop(guard, room, bounds, terrain, position, velocity, yaw):
+    """Return whether the root is valid here and wherever it would be while it braked to rest."""
+    while True:
+        valid, spared = margins(guard, terrain, position, yaw)
+        if not (valid >= 0.0 and spared >= room):
+            return False
+        if not velocity.any():
+            return True
+        position, velocity = position + velocity * bounds["time_step"], slower(velocity, bounds)
+
+
+def slower(velocity, bounds):
+    """Return the velocity [m/s] after one time step of braking."""
+    speed = np.linalg.norm(velocity)
+    loss = bounds["max_acceleration"] * bounds["time_step"]
+    return velocity * max(1.0 - loss / speed, 0.0) if speed > 0.0 else velocity
 
 
 def turned(yaw):
@@ -49,7 +79,9 @@ def turned(yaw):
 def walk(session, terrain, start, goal, steps):
     """Return the root's positions [m] until it stands within 0.2 m of the goal."""
     metadata = session.get_modelmeta().custom_metadata_map
-    layout, bounds = json.loads(metadata["observation"]), json.loads(metadata["command"])
+    layout, bounds, guard = (
+        json.loads(metadata.get(key, "null")) for key in ("observation", "command", "guard")
+    )
     grid = np.stack(np.meshgrid(layout["rows"], layout["columns"], [0.0], indexing="ij"), -1)
     profile = [[x, 0.0, 0.0] for x in layout.get("profile", [])]
     points = np.array([*grid.reshape(-1, 3), *profile])
@@ -65,9 +97,14 @@ def walk(session, terrain, start, goal, steps):
         observation = [*(to_world.T @ velocity), np.arctan2(left, ahead), *heights, *felt]
         (command,) = session.run(None, {"observation": np.array([observation], np.float32)})[0]
         position = position + velocity * bounds["time_step"]
-        velocity = velocity + to_world @ command[:3] * bounds["time_step"]
-        velocity /= max(1.0, np.linalg.norm(velocity) / bounds["max_speed"])
-        yaw = yaw + command[3] * bounds["time_step"]
+        faster = velocity + to_world @ command[:3] * bounds["time_step"]
+        faster /= max(1.0, np.linalg.norm(faster) / bounds["max_speed"])
+        # What the guard does not let pass is tried without the turn; at last the root brakes.
+        tried = [(faster, yaw + command[3] * bounds["time_step"]), (faster, yaw)]
+        if guard:
+            room = min(margins(guard, terrain, path[-1], yaw)[1], 0.0)
+            tried = [one for one in tried if can_stop(guard, room, bounds, terrain, position, *one)]
+        velocity, yaw = [*tried, (slower(velocity, bounds), yaw)][0]
         path.append(position)
     return np.array(path)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jaxleas.configuration import Allow
-from jaxleas.guide.registry import SteeringName, find_method
+from jaxleas.guide.registry import SteeringName, find_method, require_guardable
 from jaxleas.terrain import READING, Reading
 from jaxleas.types import InputError
 
@@ -32,6 +32,7 @@ def rollout(
     steering: SteeringName = "leas",
     picture: Path | None = None,
     exact: bool | None = None,
+    guard: bool | None = None,
     reading: Reading = READING,
     allow: Allow = (),
 ) -> None:
@@ -48,6 +49,8 @@ def rollout(
         picture: draw the paths from above (.png, .svg, .pdf).
         exact: judge the paths once more, exactly, on the polygons of the terrain: a path ends where
             that refuses it; by default wherever the terrain has polygons.
+        guard: brake before what R* and C refuse, even where the policy would not; by default as the
+            policy's configuration states.
         reading: what the terrain file does not state itself.
         allow: conditions of your own that the policy was trained under, to walk it under them; by
             default R* and C.
@@ -66,13 +69,15 @@ def rollout(
     _require_sizes(steps, len(asked), out)
     if picture is not None:
         require_picture(picture)
-    loaded = load_policy(policy, allow)
+    named = find_method(steering)
+    require_guardable(named, guard)
+    loaded = load_policy(policy, allow, guard)
     ground = import_terrain(terrain, reading)
     require_on_terrain(queries, asked, ground)
     scene = polygons_of(terrain, reading, exact)
     env = SteeringEnv(loaded.config, allow=allow)
     config = env.config
-    method = find_method(steering).make(env, loaded)
+    method = named.make(env, loaded)
     walked = walk_queries(env, method, ground, asked, steps)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)

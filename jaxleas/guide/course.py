@@ -104,8 +104,16 @@ class Course:
         memory = jax.tree.map(lambda new, old: jnp.where(later, new, old), after, robots.memory)
         return later & ~(foreseen >= 0.0), memory
 
-    def move(self, robots: OnTheWay, proposed: RootMotion) -> OnTheWay:
-        """Move the robots that are still walking."""
+    def move(self, robots: OnTheWay, proposed: RootMotion, guarded: bool = False) -> OnTheWay:
+        """Move the robots that are still walking.
+
+        Args:
+            robots: robots on their way.
+            proposed: motion that the steering method proposes for each robot.
+            guarded: whether the environment's guard, if it has one, watches over the method.
+        """
+        if guarded and self.env.guard is not None:
+            proposed = self.env.guard(self.atlas, self.map_index, robots.motion, proposed)
         motion = jax.tree.map(
             lambda new, old: jnp.where(_like(robots.walking, new), new, old),
             proposed,

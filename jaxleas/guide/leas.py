@@ -1,5 +1,7 @@
 """LEAS: a trained policy as a steering method (T sec. 3.2)."""
 
+from typing import ClassVar
+
 from flax import struct
 from jax import Array
 from jaxtyping import Float
@@ -18,10 +20,12 @@ class Leas:
     Attributes:
         policy: trained policy; its arrays may change without a new compilation.
         env: environment that computes the observation.
+        guarded: whether a roll-out lets the environment's guard watch over it.
     """
 
     policy: Policy
     env: SteeringEnv = struct.field(pytree_node=False)
+    guarded: ClassVar[bool] = True
 
     def __call__(
         self,
@@ -42,9 +46,9 @@ def leas(env: SteeringEnv, policy: Policy | OnnxPolicy) -> SteeringMethod:
         policy: trained policy from a run folder, a `policy.npz` or an ONNX file.
 
     Raises:
-        InputError: the environment's observation or motion differs from the policy's.
+        InputError: the environment's observation, motion or guard differs from the policy's.
     """
-    for field in ("observation", "height_low", "height_high", "limits"):
+    for field in ("observation", "height_low", "height_high", "limits", "guard"):
         here, there = getattr(env.config, field), getattr(policy.config, field)
         if here != there:
             raise InputError(

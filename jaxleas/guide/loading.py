@@ -15,7 +15,9 @@ from jaxleas.types import InputError
 _LOG = logging.getLogger("jaxleas")
 
 
-def load_policy(path: str | Path, allow: Collection[str] = ()) -> Policy | OnnxPolicy:
+def load_policy(
+    path: str | Path, allow: Collection[str] = (), guard: bool | None = None
+) -> Policy | OnnxPolicy:
     """Return the policy at `path`; its `config` describes the environment to use it in.
 
     That is the environment it was trained in, with one exception: conditions that are code, or a
@@ -25,11 +27,15 @@ def load_policy(path: str | Path, allow: Collection[str] = ()) -> Policy | OnnxP
     Args:
         path: run folder (its best policy, `RUN/policy.npz`), `policy.npz`, or `.onnx` file.
         allow: each MODULE:CLASS among the policy's conditions that the user has allowed.
+        guard: whether its roll-outs are guarded; None: as its configuration states.
 
     Raises:
         InputError: there is no policy at the path, or it cannot be used.
     """
     policy = read_steering_policy(path)
+    if guard is not None:
+        watched = policy.config.guard.model_copy(update={"enabled": guard})
+        policy = replace(policy, config=policy.config.model_copy(update={"guard": watched}))
     conditions = policy.config.conditions
     if harmless(conditions, allow):
         return policy

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from jaxleas.configuration import Allow
-from jaxleas.guide.registry import Method, SteeringName, find_method
+from jaxleas.guide.registry import Method, SteeringName, find_method, require_guardable
 from jaxleas.robots import DEFAULT_ROBOT
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
@@ -34,6 +34,7 @@ def navigate(
     seed: int = 0,
     out: Path,
     picture: Path | None = None,
+    guard: bool | None = None,
     reading: Reading = READING,
     search: PlaneSearch = PLANE_SEARCH,
     allow: Allow = (),
@@ -58,6 +59,8 @@ def navigate(
         seed: random seed of the search.
         out: the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
+        guard: brake before what R* and C refuse, even where the policy would not; by default as the
+            policy's configuration states.
         reading: details that the file does not state itself.
         search: what counts as a surface, if the terrain is a map; the final check is on these.
         allow: conditions of your own that the policy was trained under, to walk it under them; by
@@ -96,7 +99,8 @@ def navigate(
     require_search_of_map(terrain, search)
     keep_compiled_programs()
     named = find_method(steering)
-    env, method = _steering(named, policy, robot, allow)
+    require_guardable(named, guard)
+    env, method = _steering(named, policy, robot, allow, guard)
     ground = import_terrain(terrain, reading)
     places = Places(env, ground)
     motion = start_motion(places, start, goal, yaw)
@@ -134,7 +138,7 @@ def _place(option: str, text: str, may_turn: bool) -> tuple[tuple[float, float],
 
 
 def _steering(
-    method: Method, policy: Path | None, robot: str | None, allow: Allow
+    method: Method, policy: Path | None, robot: str | None, allow: Allow, guard: bool | None
 ) -> "tuple[SteeringEnv, SteeringMethod]":
     from jaxleas.envs.steering import SteeringConfig, SteeringEnv
     from jaxleas.guide.loading import load_policy
@@ -146,7 +150,7 @@ def _steering(
             )
         env = SteeringEnv(SteeringConfig.for_robot(robot or DEFAULT_ROBOT))
         return env, method.make(env, None)
-    loaded = load_policy(policy, allow)
+    loaded = load_policy(policy, allow, guard)
     if robot not in (None, loaded.config.robot):
         raise InputError(
             f"--robot {robot}: the policy {policy} is for {loaded.config.robot}; leave --robot out,"

@@ -146,6 +146,7 @@ class OnnxLeas:
     """LEAS with the policy of an ONNX file: a steering method that runs on the host."""
 
     runs_on_host: Literal[True] = True
+    guarded: Literal[True] = True
 
     def __init__(self, env: SteeringEnv, policy: OnnxPolicy):
         self.policy = policy

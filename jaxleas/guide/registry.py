@@ -169,6 +169,19 @@ def find_method(name: str) -> Method:
     return Method(name, name, name, make)
 
 
+def require_guardable(method: Method, guard: bool | None) -> None:
+    """Refuse to guard a steering method that is no policy: its walks are compared as they are.
+
+    Raises:
+        InputError: a guard was asked for, and the method is not a policy.
+    """
+    if guard and not method.needs_policy:
+        raise InputError(
+            f"--guard watches over a policy's walks, and --steering {method.name} is none: leave"
+            " one of them out"
+        )
+
+
 def method_of(key: str) -> Method | None:
     """Return the built-in method of a name in result files, with a roadmap or without.
 

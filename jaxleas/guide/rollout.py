@@ -1,5 +1,7 @@
 """Roll-out: a steering method walks many robots at once, from their starts to their goals."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -43,34 +45,44 @@ def roll_out(
     map_index = jnp.asarray(trips.map_index, jnp.int32)
     course = Course(trips.atlas, map_index, waypoints, jnp.float32(radius), env, steps)
     start = jax.tree.map(lambda leaf: jnp.asarray(leaf, jnp.float32), trips.start)
+    guarded = getattr(method, "guarded", False)
     if getattr(method, "runs_on_host", False):
-        return _walk_on_host(course, method, start)
+        return _walk_on_host(course, method, start, guarded)
     if jax.tree_util.treedef_is_leaf(jax.tree.structure(method)):
         method = jax.tree_util.Partial(method)  # a plain callable, distinguished by identity
-    return _walk_on_device(course, method, start)
+    return _walk_on_device(course, method, start, guarded)
 
 
-@jax.jit
-def _walk_on_device(course: Course, method: SteeringMethod, start: RootMotion) -> RollOut:
+@partial(jax.jit, static_argnames="guarded")
+def _walk_on_device(
+    course: Course, method: SteeringMethod, start: RootMotion, guarded: bool
+) -> RollOut:
     def step(robots: OnTheWay) -> OnTheWay:
         robots, heights, goal = course.look(robots)
-        return course.move(robots, method(heights, robots.motion, goal))
+        return course.move(robots, method(heights, robots.motion, goal), guarded)
 
     return course.finish(jax.lax.while_loop(course.goes_on, step, course.begin(start)))
 
 
-def _walk_on_host(course: Course, method: SteeringMethod, start: RootMotion) -> RollOut:
+def _walk_on_host(
+    course: Course, method: SteeringMethod, start: RootMotion, guarded: bool
+) -> RollOut:
     # Copies: the arrays donated below must be neither the caller's start nor one array twice.
     robots = jax.tree.map(jnp.copy, course.begin(start))
     while course.goes_on(robots):
         robots, heights, goal = _look(course, robots)
-        robots = _move(robots, method(heights, robots.motion, goal), course)
+        proposed = method(heights, robots.motion, goal)
+        robots = _move(robots, proposed, course, guarded=guarded)
     return _finish(course, robots)
 
 
 _look = jax.jit(Course.look, donate_argnums=1)  # the record is changed in place
 _finish = jax.jit(Course.finish)
-_move = jax.jit(lambda robots, proposed, course: course.move(robots, proposed), donate_argnums=0)
+_move = jax.jit(
+    lambda robots, proposed, course, guarded: course.move(robots, proposed, guarded),
+    donate_argnums=0,
+    static_argnames="guarded",
+)
 
 
 def paths(rollout: RollOut, time_step: float) -> list[GuidePath]:

@@ -13,6 +13,8 @@ class SteeringMethod(Protocol):
 
     `roll_out` calls it. A method that is a pytree (a `flax.struct` dataclass) may change its arrays
     without a new compilation; any other callable works too and is compiled once for each object.
+    Where it has an attribute `guarded` that is true, the environment's guard, if there is one,
+    watches over the motion that it returns.
     """
 
     def __call__(

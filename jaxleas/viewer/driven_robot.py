@@ -62,6 +62,7 @@ class DrivenRobot:
         method = leas(env, policy)
         on_host = getattr(method, "runs_on_host", False)
         self._move = method if on_host else jax.jit(method.__call__)
+        self._keep = jax.jit(lambda motion, asked: _kept(env, atlas, motion, asked))
         self._look = jax.jit(lambda motion: _look(env, atlas, motion))
         self.reset(RootPose.identity())
         self.step()
@@ -95,7 +96,8 @@ class DrivenRobot:
         """Move for one time step (T eq. 3.3); arrive, or fail, as in a roll-out."""
         goal = self._goal or (0.0, 0.0)
         target = jnp.asarray([[goal[0], goal[1], 0.0]], jnp.float32)  # LEAS only uses x and y
-        self._motion = self._move(self._heights, self._motion, target)
+        asked = self._move(self._heights, self._motion, target)
+        self._motion = self._keep(self._motion, asked)
         moved = _pose(self._motion)
         self.before, self.pose = self.pose, moved or self.pose
         self.steps += 1
@@ -145,6 +147,13 @@ def _look(
     heights = env.local_heights(atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion)
     seen = jnp.clip(heights[:, : len(env.layout.points_in_root)], *env.height_range)
     return heights, seen, env.condition(heights, motion)
+
+
+def _kept(env: SteeringEnv, atlas: Atlas, motion: RootMotion, asked: RootMotion) -> RootMotion:
+    """Return the motion that the guard lets pass, if the environment has one."""
+    if env.guard is None:
+        return asked
+    return env.guard(atlas, jnp.zeros(motion.yaw.shape, jnp.int32), motion, asked)
 
 
 def _pose(motion: RootMotion) -> RootPose | None:

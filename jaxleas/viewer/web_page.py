@@ -90,6 +90,7 @@ def page_description(
     return {
         "observation": stated["observation"],
         "command": stated["command"],
+        "guard": stated.get("guard"),
         "robot": robot.name,
         "walking_height": robot.walking_height,
         "goal_radius": config.goal_radius,

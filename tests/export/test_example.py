@@ -11,6 +11,7 @@ import numpy as np
 import onnxruntime
 import pytest
 
+from jaxleas.envs.steering.config import GuardConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
 from jaxleas.export.write import described
@@ -20,7 +21,12 @@ from jaxleas.terrain.atlas import make_atlas
 from tests.guide.walkers import flat_map, random_policy, standing, waypoints_at
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "drive_onnx.py"
-POLICIES = {name: random_policy(seed=4, observation=name) for name in ("thesis144", "feelers169")}
+GUARD = GuardConfig(enabled=True)
+POLICIES = {
+    "thesis144": random_policy(seed=4),
+    "feelers169": random_policy(seed=4, observation="feelers169"),
+    "guarded": random_policy(seed=4, guard=GUARD),
+}
 
 
 @pytest.fixture(params=POLICIES)

@@ -71,6 +71,21 @@ def test_policy_and_onnx_file_walk_alike(files):
     assert max(map(len, first.paths)) > 10
 
 
+def test_a_guard_can_be_asked_for_and_keeps_what_begins_valid(files):
+    """Random weights walk until they fail; guarded, until they must stop."""
+    for guard in (False, True):
+        rollout(**files, steps=150, guard=guard)
+        paths = read_guide_paths(files["out"]).paths
+        begun_valid = [path.valid for path in paths if path.valid[0]]
+        assert len(begun_valid) >= 2
+        assert all(each.all() for each in begun_valid) is guard
+
+
+def test_a_guard_over_what_is_no_policy_is_refused(files):
+    with pytest.raises(InputError, match="--guard watches over a policy's walks"):
+        rollout(**files, steering="kino", guard=True)
+
+
 def test_a_run_folder_stands_for_its_best_policy(files, tmp_path):
     run = tmp_path / "run"
     run.mkdir()

@@ -3,6 +3,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from jaxleas.envs.steering.config import GuardConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.export import build_onnx
 from jaxleas.export.write import described
@@ -41,6 +42,18 @@ def test_it_walks_step_by_step_where_the_roll_out_walks(kind):
         robot.step()
         np.testing.assert_allclose(robot.pose.position, expected.position[0, index], atol=1e-5)
         assert robot.pose.yaw == pytest.approx(float(expected.yaw[0, index]), abs=1e-5)
+
+
+def test_a_guarded_robot_stops_where_it_would_fail():
+    for enabled, state in ((False, "invalid"), (True, "walking")):
+        policy = random_policy(seed=4, guard=GuardConfig(enabled=enabled))
+        robot = walker(policy, SteeringEnv(policy.config))
+        robot.seek(GOAL)
+        for _ in range(60):
+            robot.step()
+            if robot.state != "walking":
+                break
+        assert robot.state == state
 
 
 def test_nothing_is_compiled_while_driving():

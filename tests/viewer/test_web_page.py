@@ -11,6 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from jaxleas.envs.steering import SteeringConfig
+from jaxleas.envs.steering.config import GuardConfig
 from jaxleas.envs.steering.env import SteeringEnv
 from jaxleas.envs.steering.motion import integrate
 from jaxleas.export import build_onnx
@@ -29,19 +31,20 @@ from tests.guide.walkers import flat_map, random_policy, small_arena
 
 POLICY = random_policy(seed=4)
 ENV = SteeringEnv(POLICY.config)
+GUARDED = SteeringEnv(SteeringConfig(guard=GuardConfig(enabled=True)))
 ONNX = build_onnx(POLICY, described(POLICY.config))
 STEPS = 200
 
 REPLAY = """
 import { readFileSync } from "node:fs";
-const { Terrain, observe, integrate } = await import(process.argv[2]);
+const { Terrain, observe, integrate, guarded } = await import(process.argv[2]);
 const { task, heights, motion, goal, commands } = JSON.parse(readFileSync(0, "utf8"));
 const terrain = new Terrain(task.terrain, heights.map((each) => each ?? NaN));
 let now = motion;
 const seen = [], walked = [];
 for (const command of commands) {
   seen.push(Array.from(observe(task, terrain, now, goal)));
-  now = integrate(task, now, command);
+  now = guarded(task, terrain, now, integrate(task, now, command));
   walked.push([...now.position, ...now.velocity, now.yaw]);
 }
 console.log(JSON.stringify({ seen, walked }));
@@ -77,8 +80,12 @@ def hills() -> HeightMap:
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node here")
-@pytest.mark.parametrize("terrain", [hills(), small_arena()[1]], ids=["hills", "arena"])
-def test_javascript_observes_and_moves_as_the_environment(terrain, tmp_path):
+@pytest.mark.parametrize(
+    ("terrain", "env"),
+    [(hills(), ENV), (small_arena()[1], ENV), (hills(), GUARDED), (small_arena()[1], GUARDED)],
+    ids=["hills", "arena", "hills, guarded", "arena, guarded"],
+)
+def test_javascript_observes_and_moves_as_the_environment(terrain, env, tmp_path):
     rng = np.random.default_rng(0)
     commands = jnp.asarray(rng.uniform(-0.08, 0.08, (STEPS, 4)) * [1, 1, 0.1, 2], jnp.float32)
     x_min, _, y_min, _ = terrain.extent
@@ -89,8 +96,8 @@ def test_javascript_observes_and_moves_as_the_environment(terrain, tmp_path):
         yaw=jnp.asarray([2.9], jnp.float32),
     )
     goal = (place[0] - 3.0, place[1] + 0.4)
-    seen, walked = replay(terrain, motion, goal, commands)
-    task = page_description(POLICY.config, ENV.robot, terrain, RootPose.from_yaw(np.zeros(3), 0.0))
+    seen, walked = replay(env, terrain, motion, goal, commands)
+    task = page_description(env.config, env.robot, terrain, RootPose.from_yaw(np.zeros(3), 0.0))
     answer = in_node(
         {
             "task": task,
@@ -114,14 +121,16 @@ def test_javascript_observes_and_moves_as_the_environment(terrain, tmp_path):
     assert (difference[:, 4:] > 1e-4).mean() < 1e-3
 
 
-def replay(terrain, motion, goal, commands):
+def replay(env, terrain, motion, goal, commands):
     """Return what the environment sees and does under given commands."""
     atlas, index = make_atlas([terrain]), jnp.zeros(1, jnp.int32)
     target = jnp.asarray([goal], jnp.float32)
 
     def step(now, command):
-        seen = ENV.observe(ENV.local_heights(atlas, index, now), now, target)
-        after = integrate(now, command[None], ENV.config.limits)
+        seen = env.observe(env.local_heights(atlas, index, now), now, target)
+        after = integrate(now, command[None], env.config.limits)
+        if env.guard is not None:
+            after = env.guard(atlas, index, now, after)
         row = jnp.concatenate([after.position[0], after.velocity[0], after.yaw])
         return after, (seen[0], row)
 

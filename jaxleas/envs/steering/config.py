@@ -51,6 +51,18 @@ class RewardWeights(Strict):
     an edge pays although one in ten falls."""
 
 
+class GuardConfig(Strict):
+    """The guard of a policy's roll-outs, which brakes before what R* and C refuse."""
+
+    enabled: bool = False
+    """Whether a command is obeyed only where the robot could still brake to rest, valid all the
+    way; otherwise it does not turn, or brakes. Training is not guarded: what is never punished is
+    not learned."""
+    spare: Annotated[float, Field(ge=0.0, le=0.08)] = 0.03
+    """Room that it leaves [m]: the trunk counts as this much larger to each side, and the square
+    under the root as this much smaller. Maps have cells of some centimetres."""
+
+
 class SteeringConfig(TaskConfig):
     """The steering environment."""
 
@@ -93,6 +105,7 @@ class SteeringConfig(TaskConfig):
     (R*), `collision` (C), one `{surrogate: FILE}`, and MODULE:CLASS of the user's own, which
     --allow must repeat on the command line."""
     limits: MotionLimits = MotionLimits()
+    guard: GuardConfig = GuardConfig()
     reward: RewardWeights = RewardWeights()
 
     @classmethod

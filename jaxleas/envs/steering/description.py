@@ -2,10 +2,12 @@
 
 from typing import Any
 
-from jaxleas.conditions import STANDARD, Collision, StrictReachability
+from jaxleas.conditions import STANDARD, Collision, StrictReachability, union_of_points
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.feelers import MOST_FELT, points_to_feel
+from jaxleas.envs.steering.guard import guard_terms
 from jaxleas.envs.steering.layout import ObservationLayout, layout_named
+from jaxleas.envs.steering.sight import sampled_points
 from jaxleas.robots import load_robot
 
 FORMAT = 1
@@ -21,7 +23,7 @@ def describe_steering(config: SteeringConfig) -> dict[str, Any]:
     """Return what a caller must know to use a policy, as plain JSON values."""
     layout = layout_named(config.observation)
     limits = config.limits
-    return {
+    described = {
         "format": FORMAT,
         "task": config.task,
         "observation": describe_observation(layout, config),
@@ -39,6 +41,32 @@ def describe_steering(config: SteeringConfig) -> dict[str, Any]:
         "robot": config.robot,
         "steering_config": config.model_dump(mode="json"),
         "source": SOURCE,
+    }
+    if config.guard.enabled:
+        described["guard"] = describe_guard(config)
+    return described
+
+
+def describe_guard(config: SteeringConfig) -> dict[str, Any]:
+    """Return what the guard asks of each configuration on the way to rest, as plain JSON values."""
+    robot = load_robot(config.robot)
+    both = guard_terms(config, robot, sampled_points(config, robot))
+    points = union_of_points([each.points_in_root for terms in both for each in terms])
+    described: dict[str, Any] = {"points": points.tolist()}
+    for name, (reach, free) in zip(("valid", "spared"), both, strict=True):
+        described[name] = {
+            "reach": [list(each) for each in reach.read_from(points).intervals],
+            "free": [list(each) for each in free.read_from(points).bottoms],
+        }
+    return described | {
+        "margin": "of valid and of spared, the least of: the largest min(height - low, high -"
+        " height) over its reach [point, low, high], and bottom - height over its free [point,"
+        " bottom]; points in the root frame [m], heights relative to the root, -10000 without"
+        " ground",
+        "rule": "a command is obeyed if, where the root arrives and wherever it would be if it then"
+        " braked to rest by max_acceleration, the margin of valid is 0 or more, and that of spared"
+        " 0 or more or no less than it is now; else the same without its turn rate; else the root"
+        " brakes",
     }
 
 

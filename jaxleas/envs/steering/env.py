@@ -12,18 +12,16 @@ from jaxleas.conditions import (
     Condition,
     Foresight,
     MarginFunction,
-    extended,
-    footprint_points,
-    outline_points,
 )
 from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.endings import Endings, Given
 from jaxleas.envs.steering.feelers import Feelers
+from jaxleas.envs.steering.guard import guard_of
 from jaxleas.envs.steering.layout import ACTION_SIZE, layout_named
 from jaxleas.envs.steering.motion import integrate, scale_action
 from jaxleas.envs.steering.observation import direction_to_goal
 from jaxleas.envs.steering.reward import RewardParams, reward
-from jaxleas.envs.steering.sight import Sight
+from jaxleas.envs.steering.sight import Sight, sampled_points
 from jaxleas.envs.steering.state import (
     GOALS,
     Route,
@@ -52,6 +50,8 @@ class SteeringEnv:
         height_range: bounds to which seen heights are clipped, relative to the root [m].
         points_in_root: points at which the local terrain is sampled [m].
         endings: conditions under which an episode goes on.
+        guard: guard that watches over a policy's roll-outs; None: there is none. Training is not
+            guarded.
         sight: what a robot sees.
     """
 
@@ -83,12 +83,11 @@ class SteeringEnv:
         self.layout = layout_named(config.observation)
         self.robot = load_robot(config.robot)
         self.height_range = (config.height_low, config.height_high)
-        sampled = np.concatenate([self.layout.points_in_root, footprint_points(self.robot)])
-        if config.outline_spacing:
-            sampled = extended(sampled, outline_points(self.robot, config.outline_spacing))
+        sampled = sampled_points(config, self.robot)
         given = Given(condition, foresight, allow)
         self.endings = Endings(config, self.robot, sampled, given, spare)
         self.points_in_root = self.endings.points_in_root
+        self.guard = guard_of(config, self.robot, sampled) if config.guard.enabled else None
         feelers = None
         if self.layout.feelers:
             feelers = Feelers(self.robot, self.layout.feelers, self.endings.at)

@@ -5,12 +5,31 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float, Int
 
+from jaxleas.conditions import extended, footprint_points, outline_points
+from jaxleas.envs.steering.config import SteeringConfig
 from jaxleas.envs.steering.feelers import Feelers
-from jaxleas.envs.steering.layout import MOTION_SIZE, ObservationLayout
+from jaxleas.envs.steering.layout import MOTION_SIZE, ObservationLayout, layout_named
 from jaxleas.envs.steering.observation import seen_motion, write_observation
 from jaxleas.envs.steering.surface_count import surface_count
+from jaxleas.robots import Robot
 from jaxleas.terrain import Atlas
 from jaxleas.types import RootMotion
+
+
+def sampled_points(config: SteeringConfig, robot: Robot) -> Float[np.ndarray, "points 2"]:
+    """Return the points that an environment samples anyway, in the root frame [m].
+
+    They are those of the observation's grid, then the footprint, then those along the outline.
+
+    Args:
+        config: configuration of the task.
+        robot: robot that walks.
+    """
+    layout = layout_named(config.observation)
+    sampled = np.concatenate([layout.points_in_root, footprint_points(robot)])
+    if config.outline_spacing:
+        sampled = extended(sampled, outline_points(robot, config.outline_spacing))
+    return sampled
 
 
 class Sight:

@@ -65,7 +65,48 @@ export async function step(ort, session, task, terrain, motion, goal) {
   const observation = observe(task, terrain, motion, goal);
   const input = new ort.Tensor("float32", observation, [1, observation.length]);
   const { command } = await session.run({ observation: input });
-  return integrate(task, motion, Array.from(command.data));
+  return guarded(task, terrain, motion, integrate(task, motion, Array.from(command.data)));
+}
+
+/** The motion that is asked for, without its turn, or braking: the first that can stop in time. */
+export function guarded(task, terrain, motion, asked) {
+  if (!task.guard) return asked;
+  const room = Math.min(0, margin(task, terrain, motion, "spared"));
+  if (canStop(task, terrain, room, asked)) return asked;
+  const straight = { ...asked, yaw: motion.yaw };
+  if (canStop(task, terrain, room, straight)) return straight;
+  return { ...straight, velocity: slower(task, motion.velocity) };
+}
+
+/** Whether the root is valid here and wherever it would be while it braked to rest. */
+function canStop(task, terrain, room, { position, velocity, yaw }) {
+  for (;;) {
+    const now = { position, yaw };
+    const isValid = margin(task, terrain, now, "valid") >= 0;
+    if (!isValid || !(margin(task, terrain, now, "spared") >= room)) return false;
+    if (!velocity.some((each) => each !== 0)) return true;
+    position = position.map((each, axis) => each + velocity[axis] * task.command.time_step);
+    velocity = slower(task, velocity);
+  }
+}
+
+/** The margin [m] of the guard's conditions ("valid"), or of those with room to spare ("spared"). */
+function margin({ guard }, terrain, { position, yaw }, which) {
+  const height = (index) => {
+    const [x, y] = turned([...guard.points[index], 0], yaw);
+    return terrain.heightAt(position[0] + x, position[1] + y) - position[2];
+  };
+  const reach = guard[which].reach.map(([index, low, high]) =>
+    Math.min(height(index) - low, high - height(index)),
+  );
+  const free = guard[which].free.map(([index, bottom]) => bottom - height(index));
+  return Math.min(Math.max(...reach), ...free);
+}
+
+function slower(task, velocity) {
+  const { max_acceleration: braking, time_step: step } = task.command;
+  const speed = Math.hypot(...velocity);
+  return velocity.map((each) => (speed > braking * step ? each * (1 - (braking * step) / speed) : 0));
 }
 
 export function distance([x, y], goal) {
