@@ -71,8 +71,9 @@ class Guard:
         stopping = RootMotion(asked.position, self.slower(motion.velocity), motion.yaw)
         room = jnp.minimum(self.margins(atlas, map_index, motion)[..., 1], 0.0)
         tried = jax.tree.map(lambda *each: jnp.stack(each), asked, straight)
-        both = (jnp.broadcast_to(each[None], tried.yaw.shape) for each in (map_index, room))
-        fine = self.can_stop(atlas, *both, tried)
+        shape = tried.yaw.shape
+        maps, rooms = (jnp.broadcast_to(each[None], shape) for each in (map_index, room))
+        fine = self.can_stop(atlas, maps, rooms, tried)
         return _chosen(fine[0], asked, _chosen(fine[1], straight, stopping))
 
     def can_stop(
