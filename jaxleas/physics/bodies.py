@@ -117,7 +117,9 @@ def _own(path: Path) -> Body:
     try:
         mjcf = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from error
+        raise InputError(
+            f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        ) from error
     return _read(path.stem, mjcf, str(path))
 
 

@@ -12,6 +12,7 @@ from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
 from jaxleas.viewer.policy_robots import drive_policies, load_robots
 from jaxleas.viewer.refusals import require_drive, require_moving
+from jaxleas.viewer.walker_options import WalkerOptions, require_walker
 
 if TYPE_CHECKING:
     from viser import ViserServer
@@ -34,6 +35,8 @@ def view(
     plan: Path | None = None,
     problem: Path | None = None,
     robot: str | None = None,
+    models: Path | None = None,
+    proposal: str | None = None,
     record: Path | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -48,15 +51,19 @@ def view(
     Args:
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         policies: run folders, policy.npz or .onnx files: one robot each, side by side.
-        controller: walking controller of a quadruped (ANYmal B), whose footsteps are planned while
-            it walks in physics to where it is sent.
+        controller: walking controller of a quadruped, whose footsteps are planned while it walks
+            in physics to where it is sent.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
         goal: first goal of the robots: x, y [m].
         guide: guide paths to play back, .npz.
         plan: a contact plan to play back, .json; with --problem.
         problem: the contact problem that the plan solves, .json.
-        robot: name of the robot that is played back, or path of its file; by default the robot that
-            the guide paths or the problem name, else talos.
+        robot: robot that is played back, by name or as the path of its file; by default that of the
+            guide paths or the problem, else talos. Without a playback it is the one that
+            --controller walks: anymal_b, or an MJCF file (.xml).
+        models: motion models of the controller; by default those of the package.
+        proposal: file of a proposal that is asked before the footstep planner; 'shipped' for that
+            of the package.
         record: write the walk to --goal, or the playback, as one HTML file, and end.
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
@@ -82,9 +89,13 @@ def view(
     for each in policies or ():  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
+    require_walker(controller, models, proposal)
     clips = _clips(guide, plan, problem, robot)
-    if robot is not None and not clips:
-        raise InputError("--robot is played back with --guide or --plan; a policy has its own")
+    if robot is not None and not (clips or controller):
+        raise InputError(
+            "--robot is played back with --guide or --plan, or walked by --controller; a policy has"
+            " its own"
+        )
     drawn = _robot_to_draw(clips, robot) if clips else None
     require_search_of_map(terrain, search)
     ground = import_terrain(terrain, reading)
@@ -116,7 +127,9 @@ def view(
             players.append(drive_policies(server, ground, robots, start, goal))
             waiting.remove()
         if controller:
-            made = _walker(server, ground, (terrain, reading, controller, start))
+            own = None if clips else robot
+            asked = WalkerOptions(controller, start, own, models, proposal)
+            made = _walker(server, ground, terrain, reading, asked)
             is_live = record is None
             players.append(kept.enter_context(made.on(server, ground, goal, is_live)))
         if record is None:
@@ -187,7 +200,9 @@ def _play_back(
 def _walker(
     server: "ViserServer",
     ground: "HeightMap",
-    options: "tuple[Path, Reading, str, tuple[float, float, float] | None]",
+    terrain: Path,
+    reading: Reading,
+    options: WalkerOptions,
 ) -> "Quadruped":
     """Return a quadruped that stands where it begins, which the page looks at."""
     waiting = server.gui.add_markdown("The quadruped is being made ...")
@@ -195,7 +210,7 @@ def _walker(
         from jaxleas.viewer.ground import look_near
         from jaxleas.viewer.legged_view import Quadruped
 
-    made = Quadruped(*options)
+    made = Quadruped(terrain, reading, options)
     look_near(server, ground, made.place)
     waiting.remove()
     return made

@@ -31,6 +31,7 @@ from jaxleas.types import InputError
 from jaxleas.viewer.legged_drive import LeggedDrive
 from jaxleas.viewer.legged_shape import LeggedShape
 from jaxleas.viewer.live_walk import LiveWalk
+from jaxleas.viewer.walker_options import WalkerOptions
 
 if TYPE_CHECKING:
     from viser import ViserServer
@@ -45,33 +46,27 @@ class Quadruped:
     Args:
         terrain: file of the terrain.
         reading: what the file does not state itself.
-        controller: name of the controller that walks.
-        start: x, y [m] and heading [deg]; None for the origin or, if there is no room, the middle.
+        options: which quadruped it is.
 
     Raises:
-        InputError: the terrain, the controller or the start cannot be used.
+        InputError: the terrain, the robot, its controller or its start cannot be used.
     """
 
-    def __init__(
-        self,
-        terrain: Path,
-        reading: Reading,
-        controller: str,
-        start: tuple[float, float, float] | None,
-    ) -> None:
-        self.body = load_body(DEFAULT_BODY)
+    def __init__(self, terrain: Path, reading: Reading, options: WalkerOptions) -> None:
+        self.body = load_body(options.robot or DEFAULT_BODY)
+        controller = options.controller
         walker = find_controller(controller, self.body, (controller,))
         polygons = has_polygons(terrain)
         self.scene = load_scene(terrain, replace(reading, resolution=None) if polygons else reading)
         if polygons and reading.resolution is None:
             reading = replace(reading, resolution=CELL)
-        model = model_of(None, walker)
+        model = model_of(options.models, walker)
         settings = WalkSettings()
         self._map = import_terrain(terrain, reading)
         costs = costs_of(model, self._map, [], settings)
         self.walk = Walk(make_physics(self.body, 1, self.scene), walker)
-        self.start = self._started(start, costs)
-        self.planner = planner_of(None, model, costs, settings)
+        self.start = self._started(options.start, costs)
+        self.planner = planner_of(options.proposal, model, costs, settings)
 
     def _started(self, start: tuple[float, float, float] | None, costs: FootCostMap) -> BodyState:
         """Return the robot at the start, or at the first place that has room."""

@@ -6,11 +6,12 @@ import subprocess
 import sys
 import threading
 import time
+from importlib.resources import as_file, files
 
 import numpy as np
 import pytest
 
-from jaxleas.footsteps import Goal
+from jaxleas.footsteps import Goal, ProposedPlanner
 from jaxleas.terrain import READING, Scene, write_scene
 from jaxleas.types import InputError
 from tests.terrain.test_scene_edges import rectangle
@@ -21,6 +22,7 @@ pytest.importorskip("mujoco")
 from jaxleas.viewer.commands import view
 from jaxleas.viewer.legged_view import Quadruped
 from jaxleas.viewer.live_walk import LiveWalk
+from jaxleas.viewer.walker_options import WalkerOptions
 
 FRAME = 1.0 / 32.0
 
@@ -35,7 +37,7 @@ def floor(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def made(floor):
-    return Quadruped(floor, READING, "trot", None)
+    return Quadruped(floor, READING, WalkerOptions("trot"))
 
 
 @contextlib.contextmanager
@@ -111,8 +113,8 @@ def test_what_a_planner_refuses_is_said(made):
 def test_a_start_without_room_is_refused(floor):
     for start in ((1.35, 0.0, 0.0), (9.0, 0.0, 0.0)):
         with pytest.raises(InputError, match=r"no ground under foot"):
-            Quadruped(floor, READING, "trot", start)
-    turned = Quadruped(floor, READING, "trot", (0.1, 0.0, 90.0))
+            Quadruped(floor, READING, WalkerOptions("trot", start))
+    turned = Quadruped(floor, READING, WalkerOptions("trot", (0.1, 0.0, 90.0)))
     w, _, _, z = turned.start.coordinates[0, 3:7]
     assert 2.0 * np.arctan2(z, w) == pytest.approx(np.pi / 2)
 
@@ -143,6 +145,23 @@ def test_what_is_no_quadruped_is_refused(floor, tmp_path):
         view(floor, controller="trot", record=tmp_path / "a.html")
     with pytest.raises(InputError, match="amble"):
         view(floor, controller="amble", goal=(0.5, 0.0), record=tmp_path / "a.html")
+    with pytest.raises(InputError, match=r"no robot 'talos' for physics, only anymal_b"):
+        view(floor, controller="trot", robot="talos", goal=(0.5, 0.0), record=tmp_path / "a.html")
+    with pytest.raises(InputError, match="--proposal needs --controller"):
+        view(floor, proposal="shipped")
+
+
+def test_a_proposal_and_models_of_its_own_controller_are_used(floor):
+    shipped = files("jaxleas.footsteps") / "data"
+    made = Quadruped(floor, READING, WalkerOptions("trot", proposal="shipped"))
+    assert isinstance(made.planner, ProposedPlanner)
+    with as_file(shipped / "trot_quick_anymal_b.npz") as models:
+        other = WalkerOptions("trot", models=models)
+        with pytest.raises(InputError, match="trot_quick"):
+            Quadruped(floor, READING, other)
+        quick = WalkerOptions("trot_quick", models=models, proposal="shipped")
+        with pytest.raises(InputError, match="no proposal for controller trot_quick"):
+            Quadruped(floor, READING, quick)
 
 
 @pytest.mark.slow
