@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from jaxleas.types import InputError
 
 EACH_FOR_CHECK = 8
-"""Of so many lessons one is not learned from: how often the proposal agrees there is reported."""
+"""One lesson in every eight is held back: the proposal is judged by how often it agrees there."""
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,15 @@
 """Files of motion models: plain arrays and one JSON text (docs/files.md)."""
 
-import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from jaxleas.files import parse_json, read_npz, require_version, typed, write_npz
+from jaxleas.footsteps.described_file import read_described, write_described
 from jaxleas.footsteps.features import Predictors
 from jaxleas.footsteps.model import Errors, FeetMode, MotionModel
 from jaxleas.types import ControllerIdentity, InputError
 
 VERSION = 1
-MAX_BYTES = 2**24
 
 
 @dataclass(frozen=True)
@@ -36,9 +32,8 @@ def write_motion_model(path: str | Path, model: MotionModel) -> None:
     values = {
         name: getattr(model, name) for name in _Metadata.__dataclass_fields__ if name != "version"
     }
-    metadata = json.dumps(asdict(_Metadata(version=VERSION, **values)))
     weights = {f"weights_{pair}": each for pair, each in enumerate(model.weights)}
-    write_npz(path, metadata=np.array(metadata), **weights)
+    write_described(path, _Metadata(version=VERSION, **values), weights)
 
 
 def read_motion_model(path: str | Path) -> MotionModel:
@@ -47,11 +42,7 @@ def read_motion_model(path: str | Path) -> MotionModel:
     Raises:
         InputError: the file holds no motion models, is damaged, or is of another version.
     """
-    arrays = read_npz(path, ("metadata", "weights_0"), MAX_BYTES)
-    content = parse_json(str(arrays["metadata"]), f"{path}: metadata")
-    if isinstance(content, dict):
-        require_version(content, VERSION, path)
-    metadata = typed(_Metadata, content, f"{path}: metadata of no motion models")
+    metadata, arrays = read_described(path, _Metadata, "motion models", VERSION, ("weights_0",))
     names = [f"weights_{pair}" for pair in range(len(metadata.controller.pairs))]
     missing = [name for name in names if name not in arrays]
     if missing:

@@ -1,19 +1,17 @@
 """Files of learned proposals: plain arrays and one JSON text (docs/files.md)."""
 
-import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from jaxleas.files import parse_json, read_npz, require_version, typed, write_npz
+from jaxleas.footsteps.described_file import read_described, write_described
 from jaxleas.footsteps.proposal import ARRAYS, Proposal
 from jaxleas.types import ControllerIdentity, InputError
 
 VERSION = 1
-MAX_BYTES = 2**24
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ def write_proposal(path: str | Path, proposal: Proposal) -> None:
     """Write a proposal to a file, whole or not at all."""
     known = _Metadata(VERSION, proposal.controller, proposal.motion, proposal.provenance)
     weights = {name: getattr(proposal, name).astype(np.float32) for name in ARRAYS}
-    write_npz(path, metadata=np.array(json.dumps(asdict(known))), **weights)
+    write_described(path, known, weights)
 
 
 def read_proposal(path: str | Path) -> Proposal:
@@ -39,11 +37,7 @@ def read_proposal(path: str | Path) -> Proposal:
     Raises:
         InputError: the file holds no proposal, is damaged, or is of another version.
     """
-    arrays = read_npz(path, ("metadata", *ARRAYS), MAX_BYTES)
-    content = parse_json(str(arrays["metadata"]), f"{path}: metadata")
-    if isinstance(content, dict):
-        require_version(content, VERSION, path)
-    known = typed(_Metadata, content, f"{path}: metadata of no proposal")
+    known, arrays = read_described(path, _Metadata, "proposal", VERSION, ARRAYS)
     weights = {name: arrays[name] for name in ARRAYS}
     for name, found in weights.items():
         ndim = 1 if name in ("bias", "hidden_bias", "last") else 2

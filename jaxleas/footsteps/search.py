@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from jaxleas.footsteps.beam import beam_search
 from jaxleas.footsteps.cost_map import FootCostMap
 from jaxleas.footsteps.exact_search import exact_search
-from jaxleas.footsteps.expansion import Expander, Limits
+from jaxleas.footsteps.expansion import Expander
+from jaxleas.footsteps.limits import Limits
 from jaxleas.footsteps.model import MotionModel
 from jaxleas.footsteps.plan import FootstepPlan, PlannedFootstep
 from jaxleas.footsteps.search_costs import Cost, Found, SearchCosts

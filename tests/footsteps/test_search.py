@@ -16,8 +16,9 @@ from jaxleas.footsteps import (
     require_start,
     settings_for,
 )
-from jaxleas.footsteps.expansion import Expander, Limits
+from jaxleas.footsteps.expansion import Expander
 from jaxleas.footsteps.framed_map import ball_heights
+from jaxleas.footsteps.limits import Limits
 from jaxleas.footsteps.search_states import start_node
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError
