@@ -1,4 +1,4 @@
-"""Contact problems, their exact planners (mixed-integer, SL1M, sampling) and certificates."""
+"""Contact problems, their exact planners (MIP, SL1M, A* on sets, sampling) and certificates."""
 
 import lazy_loader
 

@@ -48,6 +48,8 @@ from .registry import require_planner_name as require_planner_name
 from .registry import title_of as title_of
 from .sampling.planner import plan_contacts as plan_contacts
 from .sampling.settings import SamplingSettings as SamplingSettings
+from .search.astar import plan_astar as plan_astar
+from .search.settings import AstarSettings as AstarSettings
 from .settings import PlannerSettings as PlannerSettings
 from .stance_certificate import StanceCertificate as StanceCertificate
 from .stance_certificate import certify_stance as certify_stance

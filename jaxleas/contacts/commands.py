@@ -10,7 +10,7 @@ from jaxleas.contacts.models import model_note
 from jaxleas.contacts.plan import ContactPlan
 from jaxleas.contacts.plan_report import report_plan
 from jaxleas.contacts.planner import AskedGuide, Planner
-from jaxleas.contacts.planner_settings import plan_settings_from
+from jaxleas.contacts.planner_settings import in_words, plan_settings_from
 from jaxleas.contacts.problem import ContactProblem, Model
 from jaxleas.contacts.problem_file import read_problem, write_problem
 from jaxleas.contacts.programs.settings import Cost
@@ -179,5 +179,5 @@ def _require_own_contacts(planner: Planner, **given: object) -> None:
         others = [name for name in PLANNERS if find_planner(name).needs == "problem"]
         raise InputError(
             f"the {planner.name} planner chooses its own contacts: {', '.join(wrong)} is for"
-            f" {' and '.join(others)}"
+            f" {in_words(others)}"
         )

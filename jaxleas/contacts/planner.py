@@ -84,6 +84,7 @@ class Planner(ABC):
         needs: whether it plans for a contact problem, or for a guide path over a scene.
         grain: amount of work at a time that suits it.
         measures: measures that its verdicts report besides success and steps.
+        in_thesis: whether it judges by default where the thesis's suite is walked.
         name: name in the registry, or MODULE:CLASS.
     """
 
@@ -93,6 +94,7 @@ class Planner(ABC):
     needs: ClassVar[Literal["problem", "guide"]] = "guide"
     grain: ClassVar[Grain] = Grain()
     measures: ClassVar[frozenset[Measure]] = frozenset()
+    in_thesis: ClassVar[bool] = True
 
     def __init__(self, name: str) -> None:
         self.name = name

@@ -1,6 +1,6 @@
 """A planner's settings: selected from the given ones, and checked."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -84,6 +84,12 @@ def plan_settings_from(planner: Planner, **given: Any) -> Any:
     return _made(planner.name, planner.plan_settings, given, lambda each: each.plan_settings)
 
 
+def in_words(names: Sequence[str]) -> str:
+    """Return names as a list in a sentence: a, b and c."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
+
+
 def _made(
     name: str, kind: type[Strict], given: dict[str, Any], kind_of: Callable[[Planner], type[Strict]]
 ) -> Strict:
@@ -94,9 +100,7 @@ def _made(
         owners = [each.name for each in planners if unknown in kind_of(each).model_fields]
         if owners:
             option = unknown.replace("_", "-")
-            raise InputError(
-                f"--{option} is for the planner {' and '.join(owners)}, not for {name}"
-            )
+            raise InputError(f"--{option} is for the planner {in_words(owners)}, not for {name}")
         known = ", ".join(kind.model_fields) or "none"
         raise InputError(f"{name} has no setting {unknown}; it has {known}")
     try:

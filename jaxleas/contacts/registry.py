@@ -25,6 +25,7 @@ PLANNERS: Registry[type[Planner] | type[OwnPlanner]] = Registry(
         "sampling": "jaxleas.contacts.sampling_planner:Sampling",
         "mip": "jaxleas.contacts.programs.mip:Mip",
         "sl1m": "jaxleas.contacts.programs.sl1m:Sl1m",
+        "astar": "jaxleas.contacts.search.astar:Astar",
     },
     _require_planner,
 )

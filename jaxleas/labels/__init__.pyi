@@ -6,6 +6,7 @@ from .label import label_shards as label_shards
 from .label import make_shards as make_shards
 from .oracle import Oracle as Oracle
 from .own_planners import AskedGuides as AskedGuides
+from .own_planners import AstarSettings as AstarSettings
 from .own_planners import Here as Here
 from .own_planners import MipSettings as MipSettings
 from .own_planners import Outcome as Outcome

@@ -53,11 +53,11 @@ def label(
         samples: sampling: number of leg configurations in the data base, 25000 by default.
         heuristic: sampling: score that orders the candidates, fixed_step by default.
         seed: sampling: seed of the data base, 0 by default.
-        model: mip, sl1m: two_com (with the centre of mass) or feet; by default two_com where the
-            robot has two feet and step polytopes of its centre of mass.
-        candidates: mip, sl1m: surfaces in a window (the default) or in the range of motion.
-        window: mip, sl1m: edge of the window, 0.8 by default [m].
-        time_limit: mip, sl1m: time limit per guide path, 60 by default; then it stays
+        model: mip, sl1m, astar: two_com (with the centre of mass) or feet; by default two_com where
+            the robot has two feet and step polytopes of its centre of mass.
+        candidates: mip, sl1m, astar: surfaces in a window (the default) or in the range of motion.
+        window: mip, sl1m, astar: edge of the window, 0.8 by default [m].
+        time_limit: mip, sl1m, astar: time limit per guide path, 60 by default; then it stays
             undecided [s].
         max_combinations: sl1m: number of combinations after which it gives up, 2000 by default;
             0: a path that the relaxation leaves undecided fails.

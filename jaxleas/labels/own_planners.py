@@ -2,6 +2,7 @@
 
 from jaxleas.contacts import (
     AskedGuides,
+    AstarSettings,
     MipSettings,
     Outcome,
     OwnPlanner,
@@ -14,6 +15,7 @@ from jaxleas.workers import Here, ProcessWorkers, WorkerError, Workers
 
 __all__ = [
     "AskedGuides",
+    "AstarSettings",
     "Here",
     "MipSettings",
     "Outcome",

@@ -75,11 +75,11 @@ def evaluate(
         baseline: judge the baselines, RB-Lin and RB-Kino, as well.
         seed: seed of scenes and starts; training never sees any of them.
         held_out: judge on terrain for choosing and tuning, not on that of evaluation.
-        planners: exact planners that judge, or none; for the suite thesis all built-in ones.
+        planners: exact planners that judge, or none; for the suite thesis those of the thesis.
         methods: methods that stand side by side, the further policies among them; by default all.
         policies: further policies, each as name=path.
-        time_limit: time limit for one guide path, of mip and sl1m [s]; a path not decided by then
-            counts as not planned.
+        time_limit: time limit for one guide path, of mip, sl1m and astar [s]; a path not decided by
+            then counts as not planned.
         max_combinations: most combinations that SL1M tries for what its relaxation leaves
             undecided; 0: SL1M without heuristics.
         slack_weights: weights of SL1M's slacks: uniform or guide.

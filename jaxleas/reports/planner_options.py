@@ -19,7 +19,8 @@ def planner_names(suite: str, given: Sequence[str] | None) -> tuple[str, ...]:
     """
     names = words(given)
     if names is None:
-        return tuple(PLANNERS) if suite == "thesis" else ()
+        thesis = (name for name in PLANNERS if find_planner(name).in_thesis)
+        return tuple(thesis) if suite == "thesis" else ()
     if names == ["none"]:
         return ()
     for name in names:

@@ -29,7 +29,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("planner", ["mip", "sl1m"])
+@pytest.mark.parametrize("planner", ["mip", "sl1m", "astar"])
 def test_plan_then_check(folder, capsys, planner: str) -> None:
     cli.run(f"plan good.json --planner {planner} --out plan.json --picture plan.png".split())
     assert f"{planner}: feasible, 4 steps" in capsys.readouterr().out

@@ -78,7 +78,7 @@ def test_from_problem_to_plan_to_check(tmp_path, monkeypatch, capsys) -> None:
     )
     run("check plan.json stairs.json")
     assert "is certified" in capsys.readouterr().out
-    with pytest.raises(InputError, match="--cost is for mip and sl1m"):
+    with pytest.raises(InputError, match="--cost is for mip, sl1m and astar"):
         run("plan stairs.json --planner sampling --out p.json --cost linear")
 
 

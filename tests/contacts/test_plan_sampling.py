@@ -244,7 +244,7 @@ def test_a_plan_that_was_tampered_with(folder) -> None:
     ("line", "words"),
     [
         ("plan missing.json --planner sampling --out p.json", "missing.json does not exist"),
-        ("contacts guide.npz --scene scene.json --cost linear", "--cost is for mip and sl1m"),
+        ("contacts guide.npz --scene scene.json --cost linear", "--cost is for mip, sl1m and"),
         ("contacts guide.npz --scene scene.json --problem a.json", "--problem is for mip"),
         ("contacts guide.npz --scene scene.json --robot spot", "there is no robot .spot."),
         ("contacts guide.npz --scene scene.json --every 0", "every 0 must be at least 1"),

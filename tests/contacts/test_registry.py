@@ -21,10 +21,10 @@ from tests.contacts.sampling.worlds import flat, straight
 
 ROOT = Path(jaxleas.__file__).parent
 OWN_MODULES = (
-    *("contacts/registry.py", "contacts/programs"),
+    *("contacts/registry.py", "contacts/programs", "contacts/search"),
     *("contacts/plan_sampling.py", "contacts/sampling_planner.py"),
 )
-CHOICES = {"mip", "sampling", "sl1m"}
+CHOICES = {"mip", "sampling", "sl1m", "astar"}
 
 
 def named_choices(source: str) -> set[str]:
@@ -81,14 +81,14 @@ def test_an_unknown_name_gets_the_nearest_and_the_list(ask) -> None:
 def test_a_sweep_takes_built_in_planners_alone() -> None:
     assert Exact(measure="exact", planner="mip").planner == "mip"
     for name in ("magic", "module:Class"):
-        with pytest.raises(ValueError, match="there are sampling, mip, sl1m"):
+        with pytest.raises(ValueError, match="there are sampling, mip, sl1m, astar"):
             Exact(measure="exact", planner=name)
 
 
 def test_an_option_of_another_planner_names_its_owner() -> None:
     with pytest.raises(InputError, match="--cost is for the planner mip, not for sl1m"):
         plan_settings_from(find_planner("sl1m"), cost="linear")
-    with pytest.raises(InputError, match="--model is for the planner mip and sl1m, not for"):
+    with pytest.raises(InputError, match="--model is for the planner mip, sl1m and astar, not for"):
         settings_from("sampling", model="feet")
 
 
@@ -138,7 +138,9 @@ def test_a_whole_planner_of_ones_own_plans_on_the_command_line(here, capsys) -> 
     line = "contacts walks.npz --scene flat.json --planner shy_planners:Shy --every 3 --out p.json"
     cli.run(line.split())
     assert "talos walks" in capsys.readouterr().out
-    with pytest.raises(InputError, match="chooses its own contacts: --window is for mip and sl1m"):
+    with pytest.raises(
+        InputError, match="chooses its own contacts: --window is for mip, sl1m and astar"
+    ):
         cli.run([*line.split(), "--window", "0.7"])
 
 

@@ -184,7 +184,7 @@ def test_an_answer_may_state_its_cause() -> None:
         ("walkers_of_mine:something", "is not a planner: derive a class from"),
         ("walkers_of_mine:", "cannot be loaded"),
         (":Walker", "cannot be loaded"),
-        ("walker", "there is no planner 'walker'; there are sampling, mip, sl1m, or"),
+        ("walker", "there is no planner 'walker'; there are sampling, mip, sl1m, astar, or"),
     ],
 )
 def test_a_planner_that_is_none_is_refused(here, name: str, message: str) -> None:

@@ -1,0 +1,7 @@
+"""Settings of the search by forward sets."""
+
+from jaxleas.contacts.programs.settings import ProgramSettings
+
+
+class AstarSettings(ProgramSettings):
+    """Settings of the search by forward sets."""
