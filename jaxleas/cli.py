@@ -8,17 +8,17 @@ import argparse
 import difflib
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from importlib.metadata import version
 from typing import Any, NoReturn
 
 from jaxleas.cli_guard import UsageError, run_guarded
-from jaxleas.cli_options import add_options, arguments_of
+from jaxleas.cli_options import add_options, arguments_of, takes_further
 from jaxleas.runs import interrupts_deferred
 
 # Command -> (the room's module, its function, its purpose).
 COMMANDS = {
+    "train": ("jaxleas.train_command", "train", "train a policy, judge, export and document it"),
     "terrain show": ("jaxleas.terrain.commands", "show", "draw a terrain as a picture"),
     "terrain convert": (
         "jaxleas.terrain.commands",
@@ -146,6 +146,8 @@ def run(arguments: Sequence[str]) -> None:
     if name is not None:
         _call(name, arguments[len(name.split()) :])
     elif "--version" in arguments:
+        from importlib.metadata import version  # a sixth of the time that --help may take
+
         print(f"jaxleas {version('jaxleas')}")
     elif not words or _is_group_alone(arguments):
         print(_overview())
@@ -163,18 +165,34 @@ def _call(name: str, arguments: Sequence[str]) -> None:
     module, function_name, _ = COMMANDS[name]
     with interrupts_deferred():
         function = getattr(import_module(module), function_name)
+    further = takes_further(function)
     parser = _Parser(
         prog=f"jaxleas {name}",
         allow_abbrev=False,  # an abbreviation may mean something else next year
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        add_help=not further,
     )
     add_options(parser, function)
     given, unknown = parser.parse_known_args(arguments)
+    if further:
+        _call_with_further(parser, function, given, unknown)
+        return
     if unknown:
         options = [text for action in parser._actions for text in action.option_strings]
         left = [each for each in options if each not in arguments]
         raise UsageError(f"jaxleas {name} {_no(unknown[0], left)}; see jaxleas {name} --help")
     function(**arguments_of(function, given))
+
+
+def _call_with_further(
+    parser: _Parser, function: Callable[..., Any], given: argparse.Namespace, further: list[str]
+) -> None:
+    """Call a function whose first argument says which further options there are, and their help."""
+    (_, first), *others = arguments_of(function, given).items()
+    if first is None and {"-h", "--help"} & {*further}:
+        parser.print_help()
+        return
+    function(first, *further, **dict(others))
 
 
 def _is_group_alone(arguments: Sequence[str]) -> bool:
@@ -190,7 +208,7 @@ def _overview() -> str:
             "",
             *lines,
             "",
-            "Policies are trained by  python train.py configs/leas_p1.yaml",
+            "Begin with  jaxleas train leas_p1",
         ]
     )
 

@@ -14,7 +14,8 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
 
     The first parameter, if it may be given by position and has no default, becomes a positional
     argument, and so does everything before a `*`; every other parameter an option `--its-name`,
-    required if it has no default. A parameter that is a dataclass becomes one option per field.
+    required if it has no default. A parameter that is a dataclass becomes one option per field;
+    one with a `*` becomes none (`takes_further`).
 
     Args:
         parser: parser that gets the options, and its description from the docstring's first line.
@@ -29,6 +30,8 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
     starred = any(each.kind is each.KEYWORD_ONLY for each in parameters)
     for index, parameter in enumerate(parameters):
         name = parameter.name
+        if parameter.kind is parameter.VAR_POSITIONAL:
+            continue  # what the parser does not know
         if is_dataclass(hints.get(name)):
             _add_group(parser, hints[name])
             continue
@@ -49,6 +52,12 @@ def add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -
         if not required:
             _state_default(options, parameter.default)
         parser.add_argument(_flag(name), dest=name, required=required, **options)
+
+
+def takes_further(function: Callable[..., Any]) -> bool:
+    """Return whether a function takes options that its signature does not name."""
+    parameters = inspect.signature(function).parameters.values()
+    return any(each.kind is each.VAR_POSITIONAL for each in parameters)
 
 
 def arguments_of(function: Callable[..., Any], given: argparse.Namespace) -> dict[str, Any]:

@@ -21,7 +21,7 @@ ORDER = (
     *("dynamics", "conditions", "contacts", "physics", "controllers", "envs", "training", "guide"),
     *("labels", "surrogates", "multicontact", "footsteps", "crossing", "evaluation", "reports"),
     *("distillation", "sweeps", "records", "export", "viewer"),
-    *("cli_guard", "cli_options", "cli"),
+    *("cli_guard", "cli_options", "train_command", "cli", "__main__"),
 )
 """Of physics, controllers and multicontact there is the place alone."""
 # What keeps the loop of data open: these may not, although the order would let them.

@@ -18,6 +18,7 @@ from jaxleas import cli
 from jaxleas.configuration.fields import fields_of
 from jaxleas.configuration.loading import to_yaml
 from jaxleas.envs.steering.layout import FEELERS169, ICRA81, THESIS144
+from jaxleas.files import config_file
 from jaxleas.runs.folder import RunFolder
 from jaxleas.runs.metrics import read_metrics
 from jaxleas.terrain import write_height_map
@@ -87,10 +88,14 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
     while re.fullmatch(r"[A-Z_]+=.*", words[0]):  # variables of the environment
         words.pop(0)
     match words:
+        case ["jaxleas", "train", *arguments]:
+            parse_train(arguments, page, monkeypatch)
         case ["jaxleas", *arguments]:
             assert parse_jaxleas(arguments, monkeypatch), line
         case ["python", "train.py", *arguments]:
             parse_train(arguments, page, monkeypatch)
+        case ["python", "-m", "jaxleas", *arguments]:
+            assert parse_jaxleas(arguments, monkeypatch), line
         case ["python", "-m", "venv", *_]:
             pass
         case ["python", "-m", module, *arguments]:
@@ -108,7 +113,9 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
                 assert f'"{option}"' in source, f"{script} has no {option}"
         case ["make", target, *variables]:
             require_make(target, variables)
-        case ["source", ".venv/bin/activate"] | ["pip", "install", *_] | ["git", "clone", *_]:
+        case ["source", ".venv/bin/activate"] | ["git", "clone", *_]:
+            pass
+        case ["pip", "install" | "wheel", *_]:
             pass
         case _:
             pytest.fail(f"{page.name}: this test does not know how to read {line!r}")
@@ -119,7 +126,10 @@ def parse_jaxleas(arguments: list[str], monkeypatch) -> list[dict]:
     given: list[dict] = []
 
     def stub(function):
-        return functools.wraps(function)(lambda **options: given.append(options))
+        def take(*words, **options):
+            given.append({**options, "words": words})
+
+        return functools.wraps(function)(take)
 
     def import_stub(module: str) -> SimpleNamespace:
         names = [function for room, function, _ in cli.COMMANDS.values() if room == module]
@@ -132,16 +142,15 @@ def parse_jaxleas(arguments: list[str], monkeypatch) -> list[dict]:
 
 
 def parse_train(arguments: list[str], page: Path, monkeypatch) -> None:
-    monkeypatch.syspath_prepend(str(ROOT))
-    given, overrides = importlib.import_module("train")._parser().parse_known_args(arguments)
-    assert (given.config is None) != (given.resume is None)
-    if given.config is not None:
-        overrides = [each for each in overrides if each != "--help"]
-        if f"<!-- file: {given.config} -->" in page.read_text(encoding="utf-8"):
-            return  # the page's own: read where it is run
-        load_run_config(ROOT / given.config, overrides)
-    else:
+    (given,) = parse_jaxleas(["train", *arguments], monkeypatch)
+    config, *overrides = given["words"]
+    assert (config is None) != (given["resume"] is None)
+    if config is None:
         assert not overrides
+    elif f"<!-- file: {config} -->" not in page.read_text(encoding="utf-8"):
+        # a file of the page's own is read where it is run
+        overrides = [each for each in overrides if each != "--help"]
+        load_run_config(config_file(config, ROOT), overrides)
 
 
 def require_make(target: str, variables: list[str]) -> None:
@@ -159,7 +168,7 @@ def test_quoted_commands_exist(page: Path) -> None:
         options = [each for each in words if each.startswith("--")]
         if words[0] == "make":
             require_make(words[1], words[2:])
-        elif words[1] == "train.py":
+        elif words[1] in ("train.py", "train"):
             names = {f"--{field.name}" for field in fields_of(RunConfig)}
             assert {*options} <= names | {"--resume", "--run-dir", "--help"}, quoted
         elif words[0] == "jaxleas" and not words[1].startswith("-"):

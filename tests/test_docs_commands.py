@@ -163,25 +163,32 @@ class Runner:
         self._patch = monkeypatch
         monkeypatch.setattr("jaxleas.training.train_task", self._replay)
         # Judging, export and report after it are commands of their own.
-        monkeypatch.setattr("train._conclude", lambda config, run, allow: None)
+        monkeypatch.setattr("jaxleas.train_command._conclude", lambda config, run, allow: None)
 
     def sh(self, line: str) -> None:
         self.ran += 1
         match shlex.split(line, comments=True):
+            case ["jaxleas", "train", *arguments] | ["python", "train.py", *arguments]:
+                self._train(arguments)
             case ["jaxleas", *arguments]:
                 self._jaxleas(arguments)
-            case ["python", "train.py", "--resume", run, *rest]:
-                assert (Path(run) / "config.yaml").is_file(), f"{line}: no such run"
-                import_module("train").main(["--resume", run, *rest])
-            case ["python", "train.py", *arguments] if "--help" in arguments:
-                with pytest.raises(SystemExit):
-                    import_module("train").main(arguments)
-            case ["python", "train.py", *arguments]:
-                import_module("train").main(arguments)
-                for dated in Path("runs").glob("*_20??-*"):  # the next may come in the same second
-                    shutil.rmtree(dated)
             case _:
                 pytest.fail(f"this test cannot run {line!r}: give its block a title, {NOT_RUN!r}")
+
+    @staticmethod
+    def _train(arguments: list[str]) -> None:
+        run_train = import_module("train").main
+        match arguments:
+            case ["--resume", run, *_]:
+                assert (Path(run) / "config.yaml").is_file(), f"{arguments}: no such run"
+                run_train(arguments)
+            case [_, *options] if "--help" in options:
+                with pytest.raises(SystemExit):
+                    run_train(arguments)
+            case _:
+                run_train(arguments)
+                for dated in Path("runs").glob("*_20??-*"):  # the next may come in the same second
+                    shutil.rmtree(dated)
 
     def _jaxleas(self, arguments: list[str]) -> None:
         words = [" ".join(arguments[:2]), arguments[0]]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration.yaml_text import read_mapping
+from jaxleas.files import config_file
 from jaxleas.types import InputError
 
 # Sources of values, weakest first: (name for messages, stated values).
@@ -15,10 +16,13 @@ MAX_EXTENDED = 20
 def layers_of(path: str | Path) -> Layers:
     """Return the values that a YAML file and those that it extends state, the most basic first.
 
+    Args:
+        path: path of the file, or name of a configuration that comes with the package.
+
     Raises:
         InputError: a file is missing, is not a mapping, or extends itself.
     """
-    return _layers(Path(path), ())
+    return _layers(config_file(path), ())
 
 
 def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
@@ -34,7 +38,8 @@ def _layers(path: Path, above: tuple[Path, ...]) -> Layers:
     _require_below(path, parent)
     if len(above) >= MAX_EXTENDED:
         raise InputError(f"{path}: more than {MAX_EXTENDED} files extend one another")
-    return [*_layers(path.parent / parent, (*above, path.resolve())), (str(path), stated)]
+    below = config_file(parent, path.parent)
+    return [*_layers(below, (*above, path.resolve())), (str(path), stated)]
 
 
 def _require_below(path: Path, parent: str) -> None:

@@ -12,6 +12,7 @@ from jaxleas.evaluation.contender import Contender, contender
 from jaxleas.evaluation.examination import Candidate
 from jaxleas.evaluation.roadmap_contender import roadmap_contender
 from jaxleas.evaluation.terms import Terms
+from jaxleas.files import policy_path
 from jaxleas.guide import (
     METHODS,
     compared,
@@ -116,7 +117,7 @@ def parse_policies(given: Sequence[str]) -> dict[str, Path]:
             raise InputError(f"{text!r} is no policy: write name=path, e.g. leas_p2_mip=runs/p2")
         if name in policies:
             raise InputError(f"two policies are called {name!r}: give each its own name")
-        policies[name] = Path(path)
+        policies[name] = policy_path(path)
     return policies
 
 

@@ -15,6 +15,7 @@ from jaxleas.evaluation.starts import Grounds
 from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import REPORTED, REPORTED_IF_EVALUATED, Suite, make_suite
 from jaxleas.evaluation.terms import Terms
+from jaxleas.files import policy_path
 from jaxleas.guide import BASELINES, LEAS, SteeringMethod, policy_file, read_steering_policy
 from jaxleas.terrain import scale_for
 from jaxleas.types import InputError
@@ -49,7 +50,7 @@ def load_candidate(
     """Load a run folder, a policy.npz or an .onnx file, with the baselines to compare with.
 
     Args:
-        path: path of the policy.
+        path: path of the policy, or `pretrained:NAME`.
         refusal: refusal of guide paths that are foreseen to fail.
         allow: each MODULE:CLASS among the policy's conditions that is to judge it, too; by default
             R* and C judge every policy.
@@ -57,14 +58,15 @@ def load_candidate(
     Raises:
         InputError: there is no policy, it cannot be used, or the surrogate is not for it.
     """
+    path = policy_path(path)
     policy = read_steering_policy(path)
     terms = Terms.of(policy.config.conditions, refusal, allow)
     env = terms.env(policy.config)
     methods = {each.key: each.make(env, policy) for each in (LEAS, *BASELINES.values())}
-    file = policy_file(path) if Path(path).is_dir() else Path(path)
+    file = policy_file(path) if path.is_dir() else path
     fingerprint = hashlib.sha256(file.read_bytes()).hexdigest()
     note = terms.note_for(policy.config.conditions, allow)
-    return Candidate(Path(path), fingerprint, env, methods, terms, note)
+    return Candidate(path, fingerprint, env, methods, terms, note)
 
 
 def examine(

@@ -44,7 +44,7 @@ def figures(
     The file grows row by row; the same command resumes where it was interrupted, and adds methods.
 
     Args:
-        run: a run folder, a policy.npz or an .onnx file: LEAS-P1.
+        run: a LEAS-P1: run folder, policy.npz, .onnx file or pretrained:NAME.
         out: path of the figure file, .json.
         policies: further policies, each as name=path.
         methods: methods to measure, the further policies among them; by default rb_kino, leas_p1

@@ -23,5 +23,8 @@ from .reading import read_npz as read_npz
 from .reading import require_file as require_file
 from .reading import require_version as require_version
 from .reading import require_version_array as require_version_array
+from .shipped import config_file as config_file
+from .shipped import policy_path as policy_path
+from .shipped import shipped_folder as shipped_folder
 from .typed import read_typed as read_typed
 from .typed import typed as typed

@@ -39,7 +39,7 @@ def rollout(
     """Walk a policy on any terrain and write its guide paths.
 
     Args:
-        policy: a run folder, a policy.npz, or an .onnx.
+        policy: run folder, policy.npz, .onnx file, or pretrained:NAME.
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         queries: .json list of {position, yaw, velocity, goal}.
         out: the guide paths, .npz.

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from jaxleas.conditions import STANDARD, harmless, permission, words_of
 from jaxleas.envs.steering import SteeringConfig
+from jaxleas.files import policy_path
 from jaxleas.guide.onnx_policy import OnnxPolicy, read_onnx_policy
 from jaxleas.runs import policy_file
 from jaxleas.training import Policy, read_policy
@@ -25,7 +26,8 @@ def load_policy(
     stranger. Without them the policy walks under R* and C, and a warning says so.
 
     Args:
-        path: run folder (its best policy, `RUN/policy.npz`), `policy.npz`, or `.onnx` file.
+        path: run folder (its best policy, `RUN/policy.npz`), `policy.npz`, or `.onnx` file; or
+            `pretrained:NAME`.
         allow: each MODULE:CLASS among the policy's conditions that the user has allowed.
         guard: whether its roll-outs are guarded; None: as its configuration states.
 
@@ -53,12 +55,12 @@ def read_steering_policy(path: str | Path) -> Policy | OnnxPolicy:
     """Return the policy at `path`; its `config` names the conditions that it was trained under.
 
     Args:
-        path: path of a run folder, a `policy.npz` or an `.onnx` file.
+        path: path of a run folder, a `policy.npz` or an `.onnx` file, or `pretrained:NAME`.
 
     Raises:
         InputError: there is no policy at the path, or it cannot be used.
     """
-    path = Path(path)
+    path = policy_path(path)
     if path.is_dir():
         return read_policy(policy_file(path), of=SteeringConfig)
     if path.suffix == ".npz":

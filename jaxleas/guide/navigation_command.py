@@ -49,8 +49,8 @@ def navigate(
             terrain.
         planner: rrt or prm search for waypoints if the direct walk to the goal fails; none = the
             direct walk only.
-        policy: a run folder, a policy.npz or an .onnx, which leas needs; the other methods use its
-            task if it is given.
+        policy: run folder, policy.npz, .onnx file or pretrained:NAME, which leas needs; the other
+            methods use its task if it is given.
         robot: robot that walks, where no policy says it: a name, or the path of its .json; talos by
             default.
         limit: time after which the best partial path is written [s].

@@ -66,7 +66,7 @@ def evaluate(
     where it was interrupted.
 
     Args:
-        run: a run folder, a policy.npz or an .onnx file.
+        run: run folder, policy.npz, .onnx file, or pretrained:NAME.
         suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps, tables
             or thesis.
         starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
@@ -195,7 +195,7 @@ def report(run: Path, out: Path | None = None) -> Path:
 
     run = Path(run)
     if not run.is_dir():
-        raise InputError(f"{run} is not a run folder: a report needs one, as train.py writes it")
+        raise InputError(f"{run} is not a run folder: a report needs one, as training writes it")
     candidate = load_candidate(run)
     with Reporter() as reporter:
         basis = make_report_basis(candidate.env.robot)

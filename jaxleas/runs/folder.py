@@ -82,7 +82,7 @@ class RunFolder:
         if not path.exists():
             raise InputError(f"the run folder {path} does not exist")
         if not path.is_dir():
-            raise InputError(f"{path} is a file; a run folder, as train.py writes it, would do")
+            raise InputError(f"{path} is a file; a run folder, as training writes it, would do")
         lock = _take_lock(path) if writing and (path / "config.yaml").is_file() else None
         try:
             _require_run(path, needs_checkpoint)
@@ -145,7 +145,8 @@ def policy_file(run: str | Path) -> Path:
     file = folder.path / POLICY_FILE
     if not file.is_file():
         raise InputError(
-            f"the run folder {run} holds no policy.npz yet; resume it with train.py --resume {run}"
+            f"the run folder {run} holds no policy.npz yet; resume it with"
+            f" jaxleas train --resume {run}"
         )
     return file
 
@@ -184,5 +185,5 @@ def _require_run(path: Path, needs_checkpoint: bool) -> None:
     if needs_checkpoint and not any((path / "checkpoints").glob("step_*.npz")):
         raise InputError(
             f"the run folder {path} is half-written: it has no checkpoint yet; continue with "
-            f"train.py --resume {path}"
+            f"jaxleas train --resume {path}"
         )

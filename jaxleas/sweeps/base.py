@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxleas.configuration import require_field, with_values
+from jaxleas.files import config_file
 from jaxleas.training import RunConfig, load_run_config, pinned
 
 
@@ -15,14 +16,14 @@ def load_base(
 
     Args:
         path: path of the file.
-        config: path of the run configuration, relative to the file.
+        config: path of the run configuration, relative to the file, or name of a shipped one.
         changes: values by the dotted names of fields: the file's key `set`.
         allow: user's own code that may be run, as MODULE:CLASS.
 
     Raises:
         InputError: the configuration is invalid, or has no such field.
     """
-    base = pinned(load_run_config(path.parent / config, allow=allow))
+    base = pinned(load_run_config(config_file(config, path.parent), allow=allow))
     for name in changes:
         require_field(type(base), name, f"{path}: set")
     return with_values(base, changes, f"{path}: set")

@@ -177,7 +177,7 @@ class _Session:
         where = "RUN" if self.recorder is None else self.recorder.run.path
         return (
             f"interrupted after {done} of {self.trainer.config.ppo.updates} updates; all is saved:"
-            f" resume with  python train.py --resume {where}"
+            f" resume with  jaxleas train --resume {where}"
         )
 
     def _require_finite(self, stretch: Stretch) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from jaxleas.configuration import Allow
 from jaxleas.controllers import ControllerName
+from jaxleas.files import policy_path
 from jaxleas.runs import interrupts_deferred
 from jaxleas.terrain import PLANE_SEARCH, READING, PlaneSearch, Reading
 from jaxleas.types import InputError
@@ -50,7 +51,8 @@ def view(
 
     Args:
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
-        policies: run folders, policy.npz or .onnx files: one robot each, side by side.
+        policies: run folders, policy.npz or .onnx files, or pretrained:NAME; one robot each, side
+            by side.
         controller: walking controller of a quadruped, whose footsteps are planned while it walks
             in physics to where it is sent.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
@@ -83,10 +85,11 @@ def view(
 
     if (plan is None) != (problem is None):
         raise InputError("--plan and --problem belong together: a plan names no feet by itself")
-    driven = [str(each) for each in policies or ()] + ([controller] if controller else [])
+    policies = [policy_path(each) for each in policies or ()]
+    driven = [str(each) for each in policies] + ([controller] if controller else [])
     require_drive(driven, start, goal)
     require_moving(driven, goal, guide, plan, record)
-    for each in policies or ():  # before the page is shown; their content is read afterwards
+    for each in policies:  # before the page is shown; their content is read afterwards
         if not each.exists():
             raise InputError(f"--policies: there is no {each}; a run folder, a .npz or an .onnx")
     require_walker(controller, models, proposal)

@@ -1,10 +1,15 @@
 import json
+import shutil
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from jaxleas.configuration.loading import to_yaml
 from jaxleas.envs.steering import TerrainConfig
+from jaxleas.export import recording
 from jaxleas.export.commands import export
+from jaxleas.export.recording import edge_cases
 from jaxleas.files import write_json, write_text
 from jaxleas.guide import load_policy
 from jaxleas.training.config import HeldOutConfig
@@ -39,11 +44,23 @@ def test_a_run_is_exported_with_its_configuration_and_verdict(run, tmp_path, cap
     assert not (run / "policy.onnx").exists()
 
 
+def test_a_policy_file_is_exported_into_a_folder_of_its_name(run, tmp_path, monkeypatch):
+    """As `pretrained:NAME` is. How it was trained the file does not say, nor does the artifact."""
+    few = np.tile(edge_cases(POLICY), (20, 1))  # instead of walking for them
+    monkeypatch.setattr(recording, "record_observations", lambda *_: few)
+    shutil.copy(run / "policy.npz", tmp_path / "mine.npz")
+    monkeypatch.chdir(tmp_path)
+    export(Path("mine.npz"))
+    record = json.loads(Path("mine/export.json").read_text())
+    assert (record["metadata"]["training_config"], record["metadata"]["success"]) == ("", None)
+    assert load_policy("mine/policy.onnx").config == POLICY.config
+
+
 def test_what_is_no_run_is_refused(tmp_path, run):
     for path, says in (
         (tmp_path / "none", "does not exist"),
         (tmp_path, "not a run folder"),
-        (run / "policy.npz", "is a file"),
+        (run / "config.yaml", "is no policy: a run folder or a policy.npz would do"),
     ):
         with pytest.raises(InputError, match=says):
             export(path)
