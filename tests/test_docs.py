@@ -29,7 +29,8 @@ from tests.training.runs import tiny
 
 ROOT = Path(__file__).resolve().parents[1]
 RunConfig = run_config_of("steering")
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+PAGES = [*(ROOT / name for name in TOP), *sorted((ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)(?: [^\n]*)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUNS = re.compile(r"^<!-- (runs.*?) -->\n```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -53,6 +54,30 @@ def test_relative_links_resolve(page: Path) -> None:
     prose = FENCE.sub("", page.read_text(encoding="utf-8"))
     targets = re.findall(r"\]\(([^)]+)\)", prose)
     assert [each for each in targets if not resolves(page, each)] == []
+
+
+def test_the_index_of_decisions_names_every_topic() -> None:
+    index, *topics = re.split(r"^## ", (ROOT / "docs/decisions.md").read_text("utf-8"), flags=re.M)
+    named = [each.partition("\n")[0] for each in topics]
+    assert [each for each in named if f"[{each}](#" not in index] == []
+
+
+def test_every_page_has_its_place_in_the_index() -> None:
+    index = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    names = {page.name for page in PAGES if page.parent.name == "docs"} - {"index.md"}
+    assert {name for name in names if f"]({name}" not in index} == set()
+
+
+def test_the_glossary_is_in_alphabetical_order() -> None:
+    text = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    entries = re.findall(r"^- \*\*(.*?)\.\*\*", text, re.MULTILINE)
+    words = [re.findall(r"\w+", each.lower()) for each in entries]
+    assert words == sorted(words)
+
+
+def test_the_readme_is_read_in_three_minutes() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.split()) <= 900
 
 
 def resolves(page: Path, target: str) -> bool:
@@ -96,7 +121,7 @@ def test_commands_parse(page: Path, line: str, monkeypatch) -> None:
             parse_train(arguments, page, monkeypatch)
         case ["python", "-m", "jaxleas", *arguments]:
             assert parse_jaxleas(arguments, monkeypatch), line
-        case ["python", "-m", "venv", *_]:
+        case ["python", "-m", "venv" | "pytest", *_]:
             pass
         case ["python", "-m", module, *arguments]:
             file = ROOT / module.replace(".", "/")
