@@ -18,7 +18,7 @@ from jaxleas.runs import interrupts_deferred
 
 # Command -> (the room's module, its function, its purpose).
 COMMANDS = {
-    "train": ("jaxleas.train_command", "train", "train a policy, judge, export and document it"),
+    "train": ("jaxleas.train_command", "train", "train, judge, export and document a policy"),
     "terrain show": ("jaxleas.terrain.commands", "show", "draw a terrain as a picture"),
     "terrain convert": (
         "jaxleas.terrain.commands",
@@ -32,17 +32,17 @@ COMMANDS = {
     ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
-    "evaluate": ("jaxleas.reports.commands", "evaluate", "judge a policy on terrains unseen"),
+    "evaluate": ("jaxleas.reports.commands", "evaluate", "judge a policy on terrain it never saw"),
     "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
     "navigate": (
         "jaxleas.guide.navigation_command",
         "navigate",
-        "find a guide path over waypoints",
+        "find a guide path through waypoints",
     ),
     "export": (
         "jaxleas.export.commands",
         "export",
-        "write a policy as ONNX and StableHLO, checked",
+        "export a policy as ONNX and StableHLO",
     ),
     "plan": ("jaxleas.contacts.commands", "plan", "plan the contacts of a problem file"),
     "check": ("jaxleas.contacts.check_command", "check", "certify a contact plan, in metres"),

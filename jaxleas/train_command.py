@@ -64,8 +64,9 @@ def train(
         run_dir: folder for the run; by default runs/CONFIG_DATE_TIME.
         resume: run folder of an interrupted training, which is continued exactly as configured.
         devices: number of devices that share the training, or all; each CPU core is one.
-        coordinator: HOST:PORT of process 0, if several processes train together, or auto.
-        process: number of this process among those that train together, I/N.
+        coordinator: address of process 0, HOST:PORT, where several processes train together; auto:
+            as the cluster states it.
+        process: number of this process and of all that train together, I/N.
         allow: your own code that the configuration names: a task, a condition.
 
     Raises:

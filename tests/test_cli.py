@@ -159,6 +159,18 @@ def test_the_option_for_code_takes_a_module_and_a_class(name: str) -> None:
         cli.run(["export", "run", "--allow", name])
 
 
+TAILS = ("of ", "by ", "in ", "on ", "with ", "from ", "to ", "at ", "as ", "the same ")
+
+
+@pytest.mark.parametrize("name", [each for each in cli.COMMANDS if each != "gait amble"])
+def test_every_option_is_explained_by_a_phrase_that_stands_alone(name: str) -> None:
+    module, function, _ = cli.COMMANDS[name]
+    parser = cli._Parser(prog=name)
+    cli.add_options(parser, getattr(importlib.import_module(module), function))
+    helps = {action.dest: action.help or "" for action in parser._actions}
+    assert [dest for dest, text in helps.items() if len(text) < 10 or text.startswith(TAILS)] == []
+
+
 def test_help_comes_from_the_docstring(capsys) -> None:
     with pytest.raises(SystemExit) as caught:
         cli.run(["gait", "amble", "--help"])

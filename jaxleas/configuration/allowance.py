@@ -11,7 +11,7 @@ class _OwnCode:
 
     def describe(self) -> str:
         """Return what each value looks like, and why it must be given."""
-        return "each MODULE:CLASS; a name in a file alone is never imported"
+        return "each as MODULE:CLASS; code that only a file names is never imported"
 
     def parse(self, text: str) -> str:
         """Return a value given on the command line (`require_own_name`)."""

@@ -32,11 +32,12 @@ def check(
     """Recompute every constraint on a plan, in metres.
 
     Args:
-        plan: the contact plan, .json.
-        problem: the contact problem it answers, .json; for sampling, one whose roots it follows.
-        guide: the guide path it follows, .npz; of any planner but sampling, the trunk
-            is checked.
-        scene: the scene it crosses, .json, a mesh or a map; with --guide.
+        plan: file of the contact plan, .json.
+        problem: file of the contact problem that it answers, .json; for sampling, one whose roots
+            it follows.
+        guide: file of the guide path that it follows, .npz; for planners other than sampling it
+            serves to check the trunk.
+        scene: scene that it crosses: .json, a mesh or a map; needs --guide.
         query: number of the path in the guide's file.
         robot: robot of a plan that follows a guide; by default the one that walked the
             guide path, or talos where its file does not say.

@@ -45,12 +45,13 @@ def plan(
     """Plan contacts for a problem file and write the certified plan.
 
     Args:
-        problem: the contact problem, .json.
+        problem: file of the contact problem, .json.
         planner: planner to use; one that follows guide paths walks along the roots of the steps.
-        out: the plan, .json; without footholds, but with the reason, when there is no plan.
+        out: file of the plan, .json; where there is no plan it states the reason instead of
+            footholds.
         time_limit: time limit [s]; a plan not found in time has the status time_limit.
-        cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
-            quadratic distance; none by default.
+        cost: cost that mip minimises: linear (L1) or quadratic distance of footholds from those
+            that the guide suggests; none by default.
         without_guide: allow every surface in every step but the last.
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
@@ -98,11 +99,11 @@ def contacts(
     """Plan contacts along a guide path through a scene.
 
     Args:
-        guide: the guide path, .npz.
-        scene: its terrain: a scene (.json), a mesh, or a map, whose surfaces are found.
+        guide: file of the guide path, .npz.
+        scene: terrain of the path: a scene (.json), a mesh, or a map, whose surfaces are found.
         planner: planner to use; those that need a contact problem get one made of the guide.
-        out: the plan, .json.
-        problem: file to write the contact problem to, too, .json.
+        out: file of the plan, .json.
+        problem: file for the contact problem, .json, if it is to be kept.
         query: number of the path in the file.
         robot: robot whose step polytopes are used; by default the one that walked the guide path,
             or talos where its file does not say.
@@ -111,10 +112,10 @@ def contacts(
         every: keep every N-th configuration; by default the planner's own number.
         candidates: surfaces in a window around the root (the default), or in the moving leg's
             range of motion (rom).
-        window: edge of the window, 0.8 by default [m].
+        window: edge of that window [m]; 0.8 by default.
         time_limit: time limit [s]; a plan not found in time has the status time_limit.
-        cost: cost of the mip: footholds near the guide's reference ones, by linear (L1) or
-            quadratic distance; none by default.
+        cost: cost that mip minimises: linear (L1) or quadratic distance of footholds from those
+            that the guide suggests; none by default.
         max_combinations: number of combinations after which sl1m gives up, 2000 by default.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
         reading: what the scene's file does not state itself.

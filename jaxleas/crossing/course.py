@@ -62,7 +62,7 @@ class Course:
 
         Args:
             count: number of starts.
-            seed: seed of the draws.
+            seed: seed of the random draws.
         """
         drawn = np.random.default_rng(seed).uniform(-1.0, 1.0, (count, 3)) * np.array(AWAY)
         return [(float(x), float(y), float(yaw)) for x, y, yaw in drawn]

@@ -41,7 +41,7 @@ def distill(
         robot: robot that walks, or its MJCF file (.xml).
         models: motion models of the controller; by default those of the package.
         settings: how much is asked, and how it is learned.
-        allow: controller of your own that may be run, as MODULE:CLASS.
+        allow: controller of your own that may be run.
     """
     body = load_body(robot)
     walker = find_controller(controller, body, (controller, *allow))

@@ -14,12 +14,12 @@ class DistillSettings:
 
     Attributes:
         rounds: number of rounds after the first, in which the proposal walks.
-        lessons: lessons of the first round, in which the planner walks.
-        more: lessons of each round after it.
-        robots: robots that walk a lesson at once.
+        lessons: number of lessons in the first round, in which the planner walks.
+        more: number of lessons in each later round.
+        robots: number of robots that walk at once in a lesson.
         seconds: time after which a lesson ends [s].
         share: share of the contacts at which the planner is asked while the proposal walks.
-        epochs: times that each choice is learned from.
+        epochs: number of times that each choice is learned from.
     """
 
     rounds: int = 4

@@ -13,9 +13,9 @@ class MapErrors:
     """How the robot's map differs from the terrain.
 
     Attributes:
-        noise: standard deviation of what is added to each cell's height [m].
-        shift: distance by which the map is shifted, in a drawn direction [m].
-        seed: seed of the draws.
+        noise: standard deviation of the noise that is added to the height of each cell [m].
+        shift: distance by which the map is shifted, in a random direction [m].
+        seed: seed of the random draws.
     """
 
     noise: float = 0.0

@@ -91,14 +91,15 @@ def walk(
         higher: controller with higher swings, which takes over where the ground ahead needs them;
             its motion models are those of the package.
         waypoints: guide path that leads to the goal, as jaxleas navigate writes it.
-        blind: speed over the largest at which the robot goes straight to the goal, without a map.
+        blind: speed, as a share of the largest, at which the robot walks straight to the goal
+            without a map.
         proposal: file of a proposal, as jaxleas gait distill writes it, that is asked before the
             planner; 'shipped' for that of the package.
-        log: file for state and torques of every physics step (.npz).
+        log: file for state and torques at every physics step (.npz).
         settings: how the robot is walked.
         errors: how the robot's map differs from the terrain.
         reading: what the terrain file does not state itself.
-        allow: controller of your own that may be run, as MODULE:CLASS.
+        allow: controller of your own that may be run.
     """
     if log is not None and log.suffix != ".npz":
         raise InputError(f"{log}: the name of a log must end in .npz")

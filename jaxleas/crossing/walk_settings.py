@@ -12,16 +12,17 @@ class WalkSettings:
 
     Attributes:
         horizon: number of footsteps that are planned at each contact.
-        clearance: footsteps that a landing 1 m nearer to an edge than 7 cm is worth.
+        clearance: cost of a landing nearer to an edge than 7 cm, in footsteps per metre.
         buffer: distance of a foot's centre from edges [m]; by default 1.5 cm, within which
             a landing is unsafe, and the 95 % quantile of the error of its prediction.
-        fastest: largest speed that is commanded, over the controller's largest.
-        climbing: the same where a foot steps up or down.
-        jump: largest change of the command between footsteps, its parts over the controller's
-            largest, in sum.
-        sway: largest difference of two changes of the forward speed in turn, over the controller's
-            largest.
-        doubt: what each planned footstep before adds to the buffer of a landing [m].
+        fastest: largest commanded speed, as a share of the controller's largest.
+        climbing: largest commanded speed where a foot steps up or down, likewise.
+        jump: largest change of the command between footsteps: the sum of its parts, each as a share
+            of the controller's largest.
+        sway: largest difference between two successive changes of the forward speed, as a share of
+            the controller's largest.
+        doubt: length that is added to the buffer of a landing for each planned footstep before it
+            [m].
         seconds: time after which the walk ends [s].
     """
 

@@ -22,10 +22,11 @@ def distill(
         config: configuration of the distillation, YAML.
         out: folder to work in; the same command resumes where it was interrupted.
         start: run folder of the policy to begin with; by default one is trained first.
-        planner: the configuration's planner, repeated: permits one of your own as --allow does.
+        planner: name of the configuration's planner, repeated here to permit one of your own, as
+            --allow does.
         processes: number of processes that ask the planner; all cores by default.
         devices: number of devices that share the practice; all by default; each CPU core is one.
-        allow: your own code that the configuration or the run begun with names: a planner, a
+        allow: your own code that the configuration, or the run to begin with, names: a planner, a
             condition.
     """
     import os
@@ -73,8 +74,8 @@ def report(run: Path, out: Path | None = None, allow: Allow = ()) -> Path:
     Args:
         run: a run folder, or a distillation's folder.
         out: file to write; by default RUN/report.html.
-        allow: a distillation's planner of your own, to call it by its title. A training's policy is
-            judged by R* and C, whatever its own conditions.
+        allow: planner of your own that a distillation used, so that the report gives its title. The
+            policy of a training is judged by R* and C, whatever its own conditions.
 
     Raises:
         InputError: the path is not such a folder, or holds no policy, or no round, yet.

@@ -55,9 +55,10 @@ def figures(
         starts: number of starts on stairs and rubble.
         course_starts: number of starts on the long course, whose guide paths take longer.
         seed: seed of scenes and starts.
-        held_out: use terrain for choosing and tuning, not that of evaluation.
+        held_out: use the terrain for choosing and tuning, instead of that for evaluation.
         processes: number of processes that plan contacts at the same time; all cores by default.
-        allow: conditions of your own that the policy was trained under, to end walks as well.
+        allow: conditions of your own under which the policy was trained, so that they end walks as
+            well.
 
     Raises:
         InputError: there is no such policy or method, a number is out of range, or the file belongs

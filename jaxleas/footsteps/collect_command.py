@@ -40,7 +40,7 @@ def collect(
         robot: robot that walks, or its MJCF file (.xml).
         movements: movements that are commanded; 'changing' is all of them in turn.
         settings: how footsteps are collected.
-        allow: controller of your own that may be run, as MODULE:CLASS.
+        allow: controller of your own that may be run.
     """
     body = load_body(robot)
     walker = find_controller(controller, body, (controller, *allow))

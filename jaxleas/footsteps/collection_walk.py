@@ -19,11 +19,11 @@ class CollectionSettings:
 
     Attributes:
         seconds: time that each run walks [s].
-        noise: standard deviation of what is added to each torque, anew every 4 ms [Nm].
+        noise: standard deviation of the noise that is added to each torque, drawn every 4 ms [Nm].
         friction: lowest and highest friction coefficient of the feet, drawn for each run.
-        trunk_mass: greatest change of the trunk's mass, drawn for each run either way [1].
-        seed: seed of all that is drawn.
-        at_once: number of robots that walk at once, and are one shard.
+        trunk_mass: largest relative change of the trunk's mass, up or down, drawn for each run.
+        seed: seed of the random draws.
+        at_once: number of robots that walk at once and are written as one shard.
     """
 
     seconds: float = 120.0

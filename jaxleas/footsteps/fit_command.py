@@ -36,8 +36,8 @@ def fit(
         out: folder for the models (model.npz), the report (report.md), its numbers (scores.json)
             and pictures of mean displacements.
         movements: movements that the models must answer for.
-        predictors: what the models that are kept see, C1 to C4; all four are reported.
-        network: fit a small network, too, for comparison; a minute.
+        predictors: inputs of the models that are kept, C1 to C4; all four are reported.
+        network: also fit a small network for comparison, which takes a minute.
         seed: seed of the folds and of the network.
     """
     records = _read_all(footsteps)

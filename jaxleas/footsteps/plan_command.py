@@ -39,11 +39,12 @@ def plan(
         models: motion models of the controller, as `jaxleas gait fit` writes them; by default
             those of the package for the state's controller and robot.
         horizon: number of footsteps to plan where the goal is farther.
-        exact: search until no plan can be better, however long; always so up to two footsteps.
+        exact: search until no plan can be better, however long that takes; a horizon of up to two
+            footsteps is always searched so.
         cost: footsteps, or the thesis's greedy cost.
         buffer: distance of a foot's centre from edges [m]; by default 1.5 cm, within which
             a landing is unsafe, and the 95 % quantile of the error of its prediction.
-        picture: file for a picture of the map: measured, filtered, where feet may land.
+        picture: file for a picture of the map: as measured, filtered, and where feet may land.
         reading: what the terrain file does not state itself.
     """
     if picture is not None:

@@ -41,19 +41,19 @@ def rollout(
     Args:
         policy: run folder, policy.npz, .onnx file, or pretrained:NAME.
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
-        queries: .json list of {position, yaw, velocity, goal}.
-        out: the guide paths, .npz.
+        queries: file of the queries, .json: a list of {position, yaw, velocity, goal}.
+        out: file of the guide paths, .npz.
         steps: maximum number of configurations after the first one of a path.
         steering: steering method: leas is the policy; kino, RB-Kino, and lin, RB-Lin, know no
             terrain.
         picture: draw the paths from above (.png, .svg, .pdf).
-        exact: judge the paths once more, exactly, on the polygons of the terrain: a path ends where
-            that refuses it; by default wherever the terrain has polygons.
+        exact: judge the paths once more, exactly, on the polygons of the terrain, and end each
+            where it is refused; by default wherever the terrain has polygons.
         guard: brake before what R* and C refuse, even where the policy would not; by default as the
             policy's configuration states.
         reading: what the terrain file does not state itself.
-        allow: conditions of your own that the policy was trained under, to walk it under them; by
-            default R* and C.
+        allow: conditions of your own under which the policy was trained and shall walk; by default
+            it walks under R* and C.
     """
     from jaxleas.envs.steering import SteeringEnv
     from jaxleas.guide.failures import failures_on_map

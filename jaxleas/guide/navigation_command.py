@@ -51,20 +51,20 @@ def navigate(
             direct walk only.
         policy: run folder, policy.npz, .onnx file or pretrained:NAME, which leas needs; the other
             methods use its task if it is given.
-        robot: robot that walks, where no policy says it: a name, or the path of its .json; talos by
-            default.
+        robot: robot that walks where no policy is given, by name or as the path of its .json; talos
+            by default.
         limit: time after which the best partial path is written [s].
         connections: maximum number of connections that the search may try; by default as many as
             the time allows.
         seed: random seed of the search.
-        out: the guide path and its waypoints, .npz.
+        out: file of the guide path and its waypoints, .npz.
         picture: draw the path and its waypoints from above (.png, .svg, .pdf).
         guard: brake before what R* and C refuse, even where the policy would not; by default as the
             policy's configuration states.
         reading: details that the file does not state itself.
         search: what counts as a surface, if the terrain is a map; the final check is on these.
-        allow: conditions of your own that the policy was trained under, to walk it under them; by
-            default R* and C.
+        allow: conditions of your own under which the policy was trained and shall walk; by default
+            it walks under R* and C.
 
     Raises:
         InputError: the robot cannot stand at the start or at the goal, or an option is unusable.

@@ -56,9 +56,9 @@ def label(
         model: mip, sl1m, astar: two_com (with the centre of mass) or feet; by default two_com where
             the robot has two feet and step polytopes of its centre of mass.
         candidates: mip, sl1m, astar: surfaces in a window (the default) or in the range of motion.
-        window: mip, sl1m, astar: edge of the window, 0.8 by default [m].
-        time_limit: mip, sl1m, astar: time limit per guide path, 60 by default; then it stays
-            undecided [s].
+        window: mip, sl1m, astar: edge of that window [m]; 0.8 by default.
+        time_limit: mip, sl1m, astar: time limit per guide path [s], 60 by default; a path not
+            decided by then stays undecided.
         max_combinations: sl1m: number of combinations after which it gives up, 2000 by default;
             0: a path that the relaxation leaves undecided fails.
         weights: sl1m: weights of the slacks, uniform by default; guide: the guide path chooses.

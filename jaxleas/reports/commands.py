@@ -69,16 +69,17 @@ def evaluate(
         run: run folder, policy.npz, .onnx file, or pretrained:NAME.
         suite: transitions, hole, wall, circuit, dead_end, evaluation_terrain, footsteps, tables
             or thesis.
-        starts: starts per cell; by default 1000 for transitions, 200 or 100 for the others.
+        starts: number of starts per cell; by default 1000 for transitions, 200 or 100 for the
+            others.
         json: file to write the result to as well; a run folder keeps the result with the most
             starts in RUN/evaluation/.
         baseline: judge the baselines, RB-Lin and RB-Kino, as well.
         seed: seed of scenes and starts; training never sees any of them.
-        held_out: judge on terrain for choosing and tuning, not on that of evaluation.
+        held_out: judge on the terrain for choosing and tuning, instead of that for evaluation.
         planners: exact planners that judge, or none; for the suite thesis those of the thesis.
         methods: methods that stand side by side, the further policies among them; by default all.
         policies: further policies, each as name=path.
-        time_limit: time limit for one guide path, of mip, sl1m and astar [s]; a path not decided by
+        time_limit: time limit of mip, sl1m and astar for one guide path [s]; a path not decided by
             then counts as not planned.
         max_combinations: most combinations that SL1M tries for what its relaxation leaves
             undecided; 0: SL1M without heuristics.
@@ -89,9 +90,10 @@ def evaluate(
         pictures: folder for pictures of the guide paths.
         surrogate: file of a planner's surrogate; guide paths that it foresees to fail are refused:
             they end early, as stopped. The result is kept in --json only.
-        threshold: least probability of success, by the surrogate, to continue with: the risk dial.
-        allow: conditions of your own that the policy was trained under, to end walks as well; by
-            default R* and C do. The result is kept in --json only.
+        threshold: probability of success, as the surrogate foresees it, below which a walk is
+            refused: the risk dial.
+        allow: conditions of your own under which the policy was trained, so that they end walks as
+            well; by default only R* and C do. The result is kept in --json only.
 
     Raises:
         InputError: there is no such policy, suite, planner or method, or a number is out of range.

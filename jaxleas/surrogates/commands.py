@@ -28,16 +28,16 @@ def fit(
 
     Args:
         labels: folders that `jaxleas label` wrote.
-        out: surrogate file, .npz.
+        out: file of the surrogate, .npz.
         planner: planner whose verdicts are accepted; any planner by default.
         policy: run folder or policy whose environment the surrogate is for; by default the
             environment's defaults for the robot that was judged.
         where: additional folders with guide paths and scenes.
         epochs: passes over the guide paths.
-        code: outputs of the network's encoder.
+        code: number of outputs of the network's encoder.
         hidden: number of values that the network carries along.
         seed: random seed of the fit.
-        allow: conditions of your own that the policy was trained under.
+        allow: conditions of your own under which the policy was trained.
     """
     from pydantic import ValidationError
 

@@ -22,7 +22,7 @@ def sweep(
         out: folder to work in.
         storage: grpc://HOST:PORT, a database URL or FILE.log; by default a journal in the folder.
         workers: processes on this machine, or ray: the cluster that RAY_ADDRESS names.
-        parallel: number of trainings at the same time; by default as in the file.
+        parallel: number of trainings that run at the same time; by default as in the file.
         allow: your own code that the configuration names.
     """
     from jaxleas.sweeps.border import open_sweep

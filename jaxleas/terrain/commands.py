@@ -128,7 +128,8 @@ def generate(
         seed: seed of the arena; the same seed gives the same arena.
         rows: number of tiles along y.
         columns: number of tiles along x.
-        robot: robot that the tiles fit: a name, or the path of its .json; for Talos of 2 m.
+        robot: robot that the tiles fit, by name or as the path of its .json; tiles for Talos are 2
+            m long.
     """
     _require_suffix(out, ".json")
     if seed < 0:

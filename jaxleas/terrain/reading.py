@@ -19,14 +19,14 @@ class Reading:
         resolution: edge of a cell [m]; 0.04 by default, needed for images and tables.
         up: axis of a mesh that points up; z by default, y of a .glb.
         scale: metres per unit of a mesh or of the heights in a table.
-        z_min: height of black in an image [m].
-        z_max: height of white in an image [m].
+        z_min: height that black stands for in an image [m].
+        z_max: height that white stands for in an image [m].
         zero_is_void: whether black in an image means no ground.
         origin: point of the file that becomes x = y = 0, as X,Y or X,Y,Z [m]; auto takes whole
             metres at the lower left corner.
-        crop: X_MIN X_MAX Y_MIN Y_MAX of the part that is kept [m].
+        crop: bounds of the part that is kept, X_MIN X_MAX Y_MIN Y_MAX [m].
         fill: largest width of holes that are filled from their rims [m].
-        smooth: standard deviation of the Gaussian that heights are averaged with [m].
+        smooth: standard deviation of the Gaussian by which heights are smoothed [m].
         topic: topic of the map in a bag; needed if there are several.
         layer: layer of the map in a bag; elevation by default.
     """

@@ -57,9 +57,9 @@ def view(
             in physics to where it is sent.
         start: start of the robots: x, y [m] and heading [deg]; by default a place with room.
         goal: first goal of the robots: x, y [m].
-        guide: guide paths to play back, .npz.
-        plan: a contact plan to play back, .json; with --problem.
-        problem: the contact problem that the plan solves, .json.
+        guide: file of guide paths to play back, .npz.
+        plan: file of a contact plan to play back, .json; needs --problem.
+        problem: file of the contact problem that the plan solves, .json.
         robot: robot that is played back, by name or as the path of its file; by default that of the
             guide paths or the problem, else talos. Without a playback it is the one that
             --controller walks: anymal_b, or an MJCF file (.xml).
@@ -70,11 +70,12 @@ def view(
         host: address to listen on; the default can only be reached from this machine.
         port: port to listen on; 0 for any free port.
         browser: open a browser window, if there is a display.
-        surfaces: show the surfaces found in a map, one hue each; of maps up to 4 million cells.
+        surfaces: show the surfaces found in a map of up to 4 million cells, each in a hue of its
+            own.
         reading: details that the file does not state itself.
         search: what counts as a surface, if the terrain is a map.
-        allow: conditions of your own that the policies were trained under, to walk them under
-            these; by default R* and C.
+        allow: conditions of your own under which the policies were trained and shall walk; by
+            default they walk under R* and C.
     """
     from jaxleas.terrain import import_terrain, is_map, read_scene, require_search_of_map
     from jaxleas.viewer.ground import draw_terrain, look_near, paint_sky

@@ -54,12 +54,14 @@ def export(
     """Write a contact plan for other programs: footsteps, phases, or a schedule of nodes.
 
     Args:
-        plan: the contact plan, .json.
-        problem: the contact problem it answers, .json; of a plan of sampling the scene will do.
+        plan: file of the contact plan, .json.
+        problem: file of the contact problem that it answers, .json; a plan of sampling needs only
+            --scene.
         out: footsteps (.csv), phases for Crocoddyl and multicontact-api (.json), or a schedule for
             mpx (.npz).
-        guide: the guide path, .npz: landings have its times, and a schedule its root.
-        scene: the scene of a plan of sampling, .json, a mesh or a map.
+        guide: file of the guide path, .npz, which gives landings their times and a schedule its
+            root.
+        scene: scene that a plan of sampling crosses: .json, a mesh or a map.
         query: number of the path in the guide's file.
         robot: robot of a plan of sampling; by default the problem's, or the one that walked the
             guide path, or talos where no file says.

@@ -28,7 +28,7 @@ def check(
         file: transition, .json; docs/transitions.md states its keys.
         solver: compiled (by numba) or jax; by default the first that is installed.
         least: least margin of a feasible transition.
-        definition: find the margin by HiGHS, too, and say it.
+        definition: find the margin by HiGHS as well, and print it.
     """
     if not (np.isfinite(least) and least >= 0.0):
         raise InputError(f"--least {least}: {_NONNEGATIVE}")

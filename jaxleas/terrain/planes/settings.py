@@ -13,14 +13,14 @@ class PlaneSearch:
     """What counts as a surface in a height map; lengths in metres.
 
     Attributes:
-        max_slope: steepest slope of a surface that is stood on [deg].
+        max_slope: steepest slope on which feet may stand [deg].
         min_area: smallest area of a surface [m^2].
         roughness: largest root mean square distance of a surface's cells from its plane [m].
         noise: standard deviation of the map's heights [m]; by default it is measured on the map.
-        inset: length by which surfaces are drawn in from their edges [m]; by default half a cell
-            and the noise, as edges are known no better; half a foot keeps whole soles on them.
-        closing: largest width of holes without heights that a surface closes [m]; what stands out
-            of it by more than noise is left open.
+        inset: distance by which surfaces are shrunk from their edges [m]; by default half a cell
+            plus the noise, since edges are not known better; half a foot keeps whole soles on them.
+        closing: largest width of holes without heights that a surface closes [m]; a hole stays open
+            where something stands out of the surface by more than the noise.
     """
 
     max_slope: float = 45.0
