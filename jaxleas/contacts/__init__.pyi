@@ -4,6 +4,8 @@ from .from_guide import Stepping as Stepping
 from .from_guide import problem_from_guide as problem_from_guide
 from .guide_file import read_guide_path as read_guide_path
 from .guide_robot import planned_robot as planned_robot
+from .infeasibility import InfeasibilityProof as InfeasibilityProof
+from .infeasibility import ProofSet as ProofSet
 from .landings import Landing as Landing
 from .landings import landings_of as landings_of
 from .own_planner import Outcome as Outcome
@@ -36,6 +38,8 @@ from .programs.prefix import last_feasible_step as last_feasible_step
 from .programs.settings import MipSettings as MipSettings
 from .programs.settings import Sl1mSettings as Sl1mSettings
 from .programs.sl1m import plan_sl1m as plan_sl1m
+from .proof_check import ProofReport as ProofReport
+from .proof_check import certify_infeasible as certify_infeasible
 from .registry import DEFAULT_JUDGE as DEFAULT_JUDGE
 from .registry import DEFAULT_PLANNER as DEFAULT_PLANNER
 from .registry import PLANNERS as PLANNERS

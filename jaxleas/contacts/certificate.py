@@ -126,7 +126,8 @@ def _excess(A: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
 def _require_fitting(problem: ContactProblem, plan: ContactPlan) -> Float[np.ndarray, "n 3"]:
     count = len(problem.steps)
     if not plan.feasible or plan.footholds is None:
-        raise InputError(f"this plan is '{plan.status}' and has no footholds to check")
+        hint = "; a proof to check is written by --planner astar" * (plan.status == "infeasible")
+        raise InputError(f"this plan is '{plan.status}' and has no footholds to check{hint}")
     if len(plan.surfaces) != count or plan.footholds.shape != (count, 3):
         raise InputError(
             f"the plan has {len(plan.surfaces)} surfaces and {len(plan.footholds)} footholds,"

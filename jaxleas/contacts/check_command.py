@@ -2,7 +2,13 @@
 
 from pathlib import Path
 
-from jaxleas.contacts.checking import check_footholds, check_postures, check_trunk, followed_by
+from jaxleas.contacts.checking import (
+    check_footholds,
+    check_postures,
+    check_proof,
+    check_trunk,
+    followed_by,
+)
 from jaxleas.contacts.plan import read_plan
 from jaxleas.contacts.plan_report import draw
 from jaxleas.contacts.problem_file import read_problem
@@ -25,11 +31,12 @@ def check(
     scene: Path | None = None,
     query: int = 0,
     robot: str | None = None,
+    without_guide: bool = False,
     picture: Path | None = None,
     reading: Reading = READING,
     search: PlaneSearch = PLANE_SEARCH,
 ) -> None:
-    """Recompute every constraint on a plan, in metres.
+    """Recompute every constraint on a plan, in metres, or verify a proof that there is none.
 
     Args:
         plan: file of the contact plan, .json.
@@ -41,6 +48,8 @@ def check(
         query: number of the path in the guide's file.
         robot: robot of a plan that follows a guide; by default the one that walked the
             guide path, or talos where its file does not say.
+        without_guide: the plan was made with --without-guide: every whole surface is allowed in
+            every step but the last.
         picture: draw the plan from above and from the side (.png, .svg, .pdf).
         reading: what the scene's file does not state itself.
         search: what counts as a surface, if the scene is a map.
@@ -61,8 +70,14 @@ def check(
             f" jaxleas check {plan} PROBLEM.json"
         )
     asked = read_problem(problem)
+    if without_guide:
+        asked = asked.without_guide()
     if picture is not None:
         draw(picture, asked, read)
+    if read.status == "infeasible" and read.proof is not None:
+        taken = check_proof(plan, read, problem, asked)
+        print(f"{plan} is certified: there is no plan of {len(asked)} steps ({taken})")
+        return
     tightest = check_footholds(plan, read, problem, asked)
     trunk = check_trunk(plan, guide, ground, query, robot)
     print(

@@ -9,8 +9,10 @@ from jaxleas.contacts.plan_report import draw_along_guide
 from jaxleas.contacts.planner import AskedGuide
 from jaxleas.contacts.problem import ContactProblem
 from jaxleas.contacts.problem_file import read_problem
+from jaxleas.contacts.proof_check import certify_infeasible
 from jaxleas.contacts.trunk import trunk_collision
 from jaxleas.robots import load_robot
+from jaxleas.runs import Progress
 from jaxleas.terrain import Scene
 from jaxleas.types import InputError, JaxleasError
 
@@ -59,6 +61,29 @@ def check_footholds(plan: Path, read: ContactPlan, problem: Path, asked: Contact
     if not worst.certified:
         raise NotCertifiedError(f"{plan} is no plan for {problem}: it violates the {verdict}")
     return verdict
+
+
+def check_proof(plan: Path, read: ContactPlan, problem: Path, asked: ContactProblem) -> str:
+    """Verify the proof of an answer that there is no plan, and return what it took in words.
+
+    Args:
+        plan: file of the answer, for messages.
+        read: the answer, with its proof.
+        problem: file of the problem, for messages.
+        asked: the problem that it answers.
+
+    Raises:
+        NotCertifiedError: the proof does not hold.
+    """
+    assert read.proof is not None
+    with Progress(len(read.proof.sets)) as progress:
+        report = certify_infeasible(asked, read.proof, progress.update)
+    if not report.holds:
+        raise NotCertifiedError(f"{plan} is no proof for {problem}: {report.complaint}")
+    return (
+        f"{report.sets} sets of places, of {report.programs} steps from a set onto a surface by"
+        " linear programs"
+    )
 
 
 def check_trunk(

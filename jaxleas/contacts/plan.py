@@ -1,6 +1,5 @@
 """The contact plan: a planner's answer, as a value and as a file (docs/contacts.md)."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -8,7 +7,16 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.contacts.posture import Posture, posture_from_json, posture_to_json
+from jaxleas.contacts.infeasibility import InfeasibilityProof, proof_from_json, proof_to_json
+from jaxleas.contacts.plan_entries import (
+    count,
+    number,
+    numbers,
+    postures_of,
+    robustness_of,
+    word,
+)
+from jaxleas.contacts.posture import Posture, posture_to_json
 from jaxleas.files import read_json, require_version, write_json
 from jaxleas.types import CAUSES, ENDINGS, Cause, Ending, InputError
 
@@ -47,6 +55,7 @@ class ContactPlan:
             plan.
         guide_ended: how the guide path ended that the plan follows, whatever the planner found;
             None for a problem without one.
+        proof: proof that there is no plan, from a planner that writes one; else None.
     """
 
     planner: str
@@ -66,6 +75,7 @@ class ContactPlan:
     gap: float = 0.0
     cause: Cause | None = None
     guide_ended: Ending | None = None
+    proof: InfeasibilityProof | None = None
 
     @property
     def last_feasible_phase(self) -> int | None:
@@ -102,6 +112,7 @@ def write_plan(path: str | Path, plan: ContactPlan) -> None:
             "gap": plan.gap,
             "cause": plan.cause,
             "guide_ended": plan.guide_ended,
+            "proof": None if plan.proof is None else proof_to_json(plan.proof),
         },
     )
 
@@ -124,7 +135,7 @@ def read_plan(path: str | Path) -> ContactPlan:
     surfaces = content["surfaces"]
     if not isinstance(surfaces, list) or not all(isinstance(name, str) for name in surfaces):
         raise InputError(f"{path}: surfaces must be a list of surface names, one per step")
-    com, postures = content.get("com"), content.get("postures")
+    com, postures, proof = (content.get(key) for key in ("com", "postures", "proof"))
     certificate = content.get("certificate") or {}
     if not isinstance(certificate, dict):
         raise InputError(f"{path}: certificate must be an object with max_violation_m, or null")
@@ -134,66 +145,17 @@ def read_plan(path: str | Path) -> ContactPlan:
         status=content["status"],
         reason=str(content.get("reason") or ""),
         surfaces=tuple(surfaces),
-        footholds=_numbers(path, "footholds", content["footholds"], (len(surfaces), 3)),
-        com=None if com is None else _numbers(path, "com", com, (len(surfaces), 2, 3)),
-        last_feasible_step=_count(path, content, "last_feasible_phase"),
-        max_violation=_number(path, certificate, "max_violation_m"),
-        seconds=_number(path, content, "seconds") or 0.0,
-        combinations=_count(path, content, "combinations"),
-        undecided=_count(path, content, "undecided"),
-        robustness=_robustness(path, content.get("robustness")),
-        postures=None if postures is None else _postures(path, postures),
-        gap=_number(path, content, "gap") or 0.0,
-        cause=_word(path, content, "cause", CAUSES),
-        guide_ended=_word(path, content, "guide_ended", ENDINGS),
+        footholds=numbers(path, "footholds", content["footholds"], (len(surfaces), 3)),
+        com=None if com is None else numbers(path, "com", com, (len(surfaces), 2, 3)),
+        last_feasible_step=count(path, content, "last_feasible_phase"),
+        max_violation=number(path, certificate, "max_violation_m"),
+        seconds=number(path, content, "seconds") or 0.0,
+        combinations=count(path, content, "combinations"),
+        undecided=count(path, content, "undecided"),
+        robustness=robustness_of(path, content.get("robustness")),
+        postures=None if postures is None else postures_of(path, postures),
+        gap=number(path, content, "gap") or 0.0,
+        cause=word(path, content, "cause", CAUSES),
+        guide_ended=word(path, content, "guide_ended", ENDINGS),
+        proof=None if proof is None else proof_from_json(f"{path}: proof", proof),
     )
-
-
-def _number(path: str | Path, content: dict[str, Any], key: str) -> float | None:
-    value = content.get(key)
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{path}: {key} must be a number, or null, not {value!r:.60}")
-    return float(value)
-
-
-def _word(path: str | Path, content: dict[str, Any], key: str, known: Mapping[Any, str]) -> Any:
-    value = content.get(key)
-    if value is not None and value not in list(known):
-        raise InputError(f"{path}: {key} must be one of {', '.join(known)}, or null")
-    return value
-
-
-def _count(path: str | Path, content: dict[str, Any], key: str) -> int | None:
-    value = content.get(key)
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-        raise InputError(f"{path}: {key} must be a whole number, or null, not {value!r:.60}")
-    return value
-
-
-def _postures(path: str | Path, content: Any) -> tuple[Posture, ...]:
-    if not isinstance(content, list):
-        raise InputError(f"{path}: postures must be a list, or null")
-    where = f"{path}: posture"
-    return tuple(posture_from_json(f"{where} {n}", each) for n, each in enumerate(content))
-
-
-def _robustness(path: str | Path, content: Any) -> tuple[float, ...] | None:
-    if content is None:
-        return None
-    if not isinstance(content, list):
-        raise InputError(f"{path}: robustness must be a list of numbers [N], or null")
-    return tuple(_numbers(path, "robustness", content, (len(content),)).tolist())
-
-
-def _numbers(path: str | Path, key: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    try:
-        array = np.array(value, dtype=np.float64).reshape((0, *shape[1:]) if value == [] else -1)
-        array = array.reshape(shape)
-    except (TypeError, ValueError) as error:
-        wanted = " x ".join(str(size) for size in shape)
-        raise InputError(f"{path}: {key} must hold {wanted} numbers, one row per step") from error
-    if not np.isfinite(array).all():
-        raise InputError(f"{path}: {key} holds a number that is not finite")
-    return array

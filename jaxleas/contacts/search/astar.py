@@ -11,6 +11,7 @@ from jaxleas.contacts.programs.answers import certified, diagnosed, late
 from jaxleas.contacts.programs.judging import judge_by_program
 from jaxleas.contacts.search.decide_by_sets import decide_by_sets
 from jaxleas.contacts.search.displacements import SLACK
+from jaxleas.contacts.search.proof_writing import proof_of
 from jaxleas.contacts.search.settings import AstarSettings
 from jaxleas.types import Verdict
 
@@ -53,7 +54,8 @@ def plan_astar(
     have, a convex polygon on one surface: F' = surface and (F + D), with D the displacements that
     the step allows (after CASSR, Wang and Tonneau 2026, arXiv 2603.02989). With the surfaces
     found, the linear program of `plan_mip` places the feet with the most distance to spare. The
-    plan has the fewest steps, which a problem states, and no least cost.
+    plan has the fewest steps, which a problem states, and no least cost. Where there is none, the
+    answer holds a proof, which `certify_infeasible` verifies.
 
     Args:
         problem: the contact problem, of two feet; `problem.without_guide()` for
@@ -84,6 +86,7 @@ def plan_astar(
         return ContactPlan("astar", False, "not_found", why, seconds=seconds, cause="not_found")
     why = "no choice of surfaces works"
     plan = ContactPlan("astar", False, "infeasible", why, seconds=seconds, cause="infeasible")
+    plan = plan.but(proof=proof_of(found), seconds=time.perf_counter() - begin)
     if not diagnose:
         return plan
 

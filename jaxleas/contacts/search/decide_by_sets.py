@@ -32,6 +32,7 @@ class SetsDecision:
         sets: the problem's sets, for a proof.
         kept: sets that no other one holds.
         leading: surfaces that lead on after each number of steps.
+        images: sets that follow from each one by a step onto surfaces that lead on.
         expansions: number of sets stepped from.
     """
 
@@ -41,6 +42,7 @@ class SetsDecision:
     sets: ForwardSets | None = None
     kept: Kept = field(default_factory=dict)
     leading: list[frozenset[str]] = field(default_factory=list)
+    images: dict[PlaceSet, list[PlaceSet]] = field(default_factory=dict)
     expansions: int = 0
 
 
@@ -57,10 +59,11 @@ def decide_by_sets(problem: ContactProblem, deadline: float = np.inf) -> SetsDec
     sets = ForwardSets(problem)
     leading = surfaces_that_lead_on(sets)
     kept: Kept = defaultdict(list)
-    search = BestFirst(_graph(sets, leading, kept))
+    images: dict[PlaceSet, list[PlaceSet]] = {}
+    search = BestFirst(_graph(sets, leading, kept, images))
     marginal = False
     try:
-        for goal in search.goals([sets.start()], deadline):
+        for goal in search.goals([sets.start], deadline):
             surfaces = tuple(each.landed for each in goal.path()[1:])
             placement = _place(problem, surfaces, deadline)
             if placement.status == "optimal":
@@ -71,7 +74,7 @@ def decide_by_sets(problem: ContactProblem, deadline: float = np.inf) -> SetsDec
     except OutOfTimeError:
         return SetsDecision("time_limit", expansions=search.expansions)
     status = "marginal" if marginal else "infeasible"
-    return SetsDecision(status, (), None, sets, kept, leading, search.expansions)
+    return SetsDecision(status, (), None, sets, kept, leading, images, search.expansions)
 
 
 def _place(problem: ContactProblem, surfaces: tuple[str, ...], deadline: float) -> Placement:
@@ -79,14 +82,20 @@ def _place(problem: ContactProblem, surfaces: tuple[str, ...], deadline: float) 
     return place(problem, constraints, surfaces, deadline)
 
 
-def _graph(sets: ForwardSets, leading: list[frozenset[str]], kept: Kept) -> Graph[PlaceSet]:
+def _graph(
+    sets: ForwardSets,
+    leading: list[frozenset[str]],
+    kept: Kept,
+    images: dict[PlaceSet, list[PlaceSet]],
+) -> Graph[PlaceSet]:
     """Return the sets as a graph: each step costs one, and exactly the rest remains."""
     count = len(sets.problem)
 
     def successors(held: PlaceSet) -> list[tuple[float, PlaceSet]]:
         move = sets.moves[held.step]
         allowed = leading[held.step + 1] if move.changes else frozenset(move.candidates)
-        return [(1.0, each) for each in sets.after(held, allowed)]
+        images[held] = list(sets.after(held, allowed))
+        return [(1.0, each) for each in images[held]]
 
     def heuristic(held: PlaceSet) -> float:
         if held.surface not in leading[held.step]:

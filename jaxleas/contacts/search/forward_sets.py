@@ -139,8 +139,9 @@ class ForwardSets:
             self._grounds[names] = Ground([self.problem.surfaces[name].vertices for name in names])
         return self._grounds[names]
 
+    @cached_property
     def start(self) -> PlaceSet:
-        """Return the place of the foot that stands in the first step."""
+        """The place of the foot that stands in the first step."""
         first = self.problem.steps[0].foot
         (pose,) = (pose for name, pose in self.problem.initial.items() if name != first)
         return PlaceSet(0, NOWHERE, Region(Plane.level(pose.position), np.zeros((1, 2))))
@@ -153,10 +154,8 @@ class ForwardSets:
             allowed: names of surfaces that the step may land on.
         """
         move = self.moves[held.step]
-        if move.body is None:
-            return
-        near = [name for name in self._near(held.region, move) if name in allowed]
-        if not near:
+        near = [name for name in self.near(held) if name in allowed]
+        if not near or move.body is None:
             return
         if not move.changes:
             yield from self._carried(held, move, near)
@@ -183,11 +182,13 @@ class ForwardSets:
             self._landings[key] = sum_rows(self.whole(name), move.back)
         return self._landings[key]
 
-    def _near(self, region: Region, move: Move) -> list[str]:
-        """Return the candidates whose boxes the displacements reach."""
-        assert move.body is not None
-        low = region.vertices.min(axis=0) + move.body.low
-        high = region.vertices.max(axis=0) + move.body.high
+    def near(self, held: PlaceSet) -> list[str]:
+        """Return the candidates whose boxes the next step reaches from a set."""
+        move = self.moves[held.step]
+        if move.body is None:
+            return []
+        low = held.region.vertices.min(axis=0) + move.body.low
+        high = held.region.vertices.max(axis=0) + move.body.high
         ground = self.ground(move.candidates)
         met = ((ground.low <= high) & (ground.high >= low)).all(axis=1)
         return [move.candidates[index] for index in np.flatnonzero(met)]

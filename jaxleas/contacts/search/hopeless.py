@@ -44,7 +44,7 @@ def possible_pairs(sets: ForwardSets, names: tuple[str, ...], move: Move) -> np.
     normals = move.body.normals
     least, _ = sets.ground(move.candidates).along(normals)
     if names == (NOWHERE,):
-        most = (sets.start().region.vertices @ normals.T).max(axis=0)[None]
+        most = (sets.start.region.vertices @ normals.T).max(axis=0)[None]
     else:
         _, most = sets.ground(names).along(normals)
     return np.all(least[None] <= most[:, None] + move.body.offsets, axis=-1)

@@ -10,13 +10,19 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.contacts.search.bodies import Body
+from jaxleas.contacts.search.corners import (
+    clip,
+    cross,
+    distance_beyond,
+    distinct,
+    signed_area,
+)
 from jaxleas.contacts.surfaces import ContactSurface
 
 SAME = 1e-10
 """A region counts as inside another one if no corner is outside by more than this [m]."""
 AT_ONCE = 5
 """Number of half-spaces that clip a region before the others are looked at again."""
-_SAME_POINT = 1e-12  # corners nearer than this are one [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +45,7 @@ class Plane:
         corners = surface.vertices
         along = corners[1] - corners[0]
         along = along / np.sqrt(along @ along)
-        return cls(corners[0], np.stack([along, _cross(surface.normal, along)]), surface.normal)
+        return cls(corners[0], np.stack([along, cross(surface.normal, along)]), surface.normal)
 
     @classmethod
     def level(cls, point: Float[np.ndarray, " 3"]) -> "Plane":
@@ -72,20 +78,24 @@ class Region:
 
     @cached_property
     def edges(self) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, " n"]]:
-        """Outward normals of the edges in the plane's coordinates, of any length, and bounds."""
+        """Outward unit normals of the edges in the plane's coordinates, and bounds [m]."""
         ends = np.roll(self.corners, -1, axis=0)
         along = ends - self.corners
-        sign = 1.0 if _area(self.corners) >= 0.0 else -1.0
+        sign = 1.0 if signed_area(self.corners) >= 0.0 else -1.0
         outward = sign * np.stack([along[:, 1], -along[:, 0]], axis=1)
+        outward /= np.sqrt(np.einsum("nk,nk->n", along, along))[:, None]
         return outward, np.einsum("nk,nk->n", outward, self.corners)
 
     def contains(self, other: "Region") -> bool:
         """Return whether another region of the same plane lies inside."""
+        return self.outside(other) <= SAME
+
+    def outside(self, other: "Region") -> float:
+        """Return how far another region of the same plane sticks out [m]; negative: it does not."""
         if len(self.corners) < 3:
-            return bool(_reaches(self.corners, other.corners))
+            return distance_beyond(self.corners, other.corners)
         outward, bounds = self.edges
-        room = SAME * np.abs(outward).sum(axis=1)
-        return bool((other.corners @ outward.T <= bounds + room).all())
+        return float((other.corners @ outward.T - bounds).max())
 
     def clipped(
         self, normals: Float[np.ndarray, "m 3"], bounds: Float[np.ndarray, " m"]
@@ -108,11 +118,11 @@ class Region:
             deepest = cutting[np.argsort(-excess[cutting])[:AT_ONCE]]
             left = [(x, y) for x, y in corners.tolist()]
             for (a, b), c in zip(rows[deepest].tolist(), limits[deepest].tolist(), strict=True):
-                left = _clip(left, a, b, c)
+                left = clip(left, a, b, c)
                 if not left:
                     return None
             excess[deepest] = 0.0
-            corners = np.array(_distinct(left))
+            corners = np.array(distinct(left))
             excess[cutting] = np.minimum(
                 excess[cutting], (corners @ rows[cutting].T - limits[cutting]).max(axis=0)
             )
@@ -132,8 +142,8 @@ def sum_rows(region: Region, body: Body) -> tuple[np.ndarray, np.ndarray]:
     if len(corners) > 1:
         normal = region.plane.normal
         along = np.roll(corners, -1, axis=0) - corners
-        outward = _cross(along, normal)
-        if _area(region.corners) < 0.0:
+        outward = cross(along, normal)
+        if signed_area(region.corners) < 0.0:
             outward = -outward
         first, second = body.between[:, 0], body.between[:, 1]
         slope, other = first @ along.T, second @ along.T  # [E, n]
@@ -148,54 +158,3 @@ def sum_rows(region: Region, body: Body) -> tuple[np.ndarray, np.ndarray]:
     reach = (every @ corners.T).max(axis=1)
     own = len(body.normals)
     return every, reach + np.concatenate([body.offsets, body.support(every[own:])])
-
-
-def _clip(
-    corners: list[tuple[float, float]], a: float, b: float, c: float
-) -> list[tuple[float, float]]:
-    """Return the part of a polygon with a x + b y <= c (Sutherland and Hodgman 1974)."""
-    excess = [a * x + b * y - c for x, y in corners]
-    if max(excess) <= 0.0:
-        return corners
-    kept = []
-    before, (u, v) = excess[-1], corners[-1]
-    for here, (x, y) in zip(excess, corners, strict=True):
-        if (before > 0.0) != (here > 0.0):
-            share = before / (before - here)
-            kept.append((u + share * (x - u), v + share * (y - v)))
-        if here <= 0.0:
-            kept.append((x, y))
-        before, u, v = here, x, y
-    return kept
-
-
-def _distinct(corners: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Drop corners that are where the one before is."""
-    kept = []
-    u, v = corners[-1]
-    for x, y in corners:
-        if abs(x - u) > _SAME_POINT or abs(y - v) > _SAME_POINT:
-            kept.append((x, y))
-            u, v = x, y
-    return kept or corners[:1]
-
-
-def _cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the vector product of rows of three; `np.cross` takes five times as long."""
-    a, b, c = one.T
-    x, y, z = other.T
-    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
-
-
-def _area(corners: np.ndarray) -> float:
-    x, y = corners[:, 0], corners[:, 1]
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-
-
-def _reaches(held: np.ndarray, others: np.ndarray) -> bool:
-    """Return whether all points lie on a segment, or are one point."""
-    start, along = held[0], held[-1] - held[0]
-    length = float(along @ along)
-    share = np.clip((others - start) @ along / length, 0.0, 1.0) if length > 0.0 else 0.0
-    nearest = start + np.multiply.outer(share, along)
-    return bool((np.abs(others - nearest) <= SAME).all())

@@ -15,6 +15,7 @@ URDF = """<robot name="toy"><link name="a"/><link name="b"/><link name="c"/>
 
 
 def contact_kinds(folder: Path) -> list[Kind]:
+    from jaxleas.contacts.infeasibility import InfeasibilityProof, ProofSet
     from jaxleas.contacts.plan import ContactPlan, read_plan, write_plan
     from jaxleas.contacts.posture import Posture
     from jaxleas.contacts.problem import FootPose
@@ -52,6 +53,7 @@ def contact_kinds(folder: Path) -> list[Kind]:
         max_violation=0.0,
         robustness=(1.0,),
         postures=(posture,),
+        proof=InfeasibilityProof((ProofSet(0, "", np.zeros((1, 3)), {"floor": 0}),)),
     )
     write_plan(folder / "plan.json", plan)
     asked = folder / "problem.json"
