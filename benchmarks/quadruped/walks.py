@@ -30,6 +30,7 @@ from jaxleas.footsteps import (
 )
 from jaxleas.physics import BodyState, load_body, make_physics
 from jaxleas.terrain import HeightMap, SceneEdges, rasterise
+from jaxleas.types import ControllerIdentity
 
 CELL, COARSE = 0.01, 0.02
 """Edge of a cell of the true map, and of the noisy one [m]."""
@@ -47,10 +48,12 @@ class Crossed:
     Attributes:
         crossings: one for each robot.
         counts: what was counted of all together.
+        controller: identity of the controller that walked.
     """
 
     crossings: Sequence[Crossing]
     counts: Tally
+    controller: ControllerIdentity
 
     @property
     def reached(self) -> int:
@@ -159,9 +162,9 @@ def _walk(
 
 
 def _judged(course: Course, walk: Walk, crossings: Sequence[Crossing]) -> Crossed:
-    edges = SceneEdges.of(course.scene)
-    counts = [tally(each, edges, walk.controller.identity) for each in crossings]
-    return Crossed(crossings, together(counts))
+    edges, identity = SceneEdges.of(course.scene), walk.controller.identity
+    counts = [tally(each, edges, identity) for each in crossings]
+    return Crossed(crossings, together(counts), identity)
 
 
 def worst_unsafe(found: Sequence[Crossed]) -> float:
