@@ -66,7 +66,7 @@ def _proposal(given: argparse.Namespace) -> Iterator[Row]:
 def _models(given: argparse.Namespace) -> Iterator[Row]:
     if given.scores is None or given.varied is None:
         raise InputError(
-            "models: give --scores and --varied, each a scores.json of jaxleas gait fit: of"
+            "models: give --scores and --varied, scores.json of jaxleas gait fit: of"
             " footsteps without variations, and with them"
         )
     yield from model_rows(given.scores, given.varied)
@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--starts", type=int, default=10, help="number of starts")
     add("--held-out", action="store_true", help="starts for tuning; nothing is written")
     add("--scores", type=Path, help="scores.json of a fit to footsteps without variations")
-    add("--varied", type=Path, help="scores.json of a fit to footsteps with all variations")
+    add("--varied", type=Path, nargs="+", help="the same of footsteps with all variations")
     add("--public", type=Path, help="folder of the public footsteps of 2023")
     add("--out", type=Path, default=OUT)
     return parser

@@ -1,6 +1,6 @@
 """Figures of motion models from the scores of fits: the worst of both pairs and all feet."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,14 +33,14 @@ class _Figure:
     limit: float
     suits: Suits
 
-    def row(self, scores: list[dict[str, Any]], is_varied: bool) -> Row:
-        """Return the worst of all pairs and feet."""
+    def row(self, fits: Sequence[list[dict[str, Any]]], is_varied: bool) -> Row:
+        """Return the worst of all pairs and feet, one value for each fit."""
         better: Better = "higher" if self.key == "r2" else "lower"
-        found = [each[self.key] for each in scores if self.suits(each)]
-        worst = min(found) if better == "higher" else max(found)
+        worst = min if better == "higher" else max
+        values = [worst(each[self.key] for each in fit if self.suits(each)) for fit in fits]
         name = f"{self.name}_varied" if is_varied else self.name
         limit = None if is_varied else self.limit
-        return Row(name, self.unit, [worst], limit=limit, better=better)
+        return Row(name, self.unit, values, limit=limit, better=better)
 
 
 def _com(axis: str) -> Suits:
@@ -65,21 +65,22 @@ FIGURES = (
 )
 
 
-def model_rows(plain: Path, varied: Path) -> Iterator[Row]:
+def model_rows(plain: Path, varied: Sequence[Path]) -> Iterator[Row]:
     """Yield R2 and mean absolute errors by run of C4, and its error over those of its rivals.
 
     Args:
         plain: scores.json of a fit to footsteps without noise and of one friction and mass.
-        varied: scores.json of a fit to footsteps with all variations; its rows end in _varied.
+        varied: scores.json of fits to footsteps with all variations, one for each collection; their
+            rows end in _varied, and have one value for each.
     """
-    for path, is_varied in ((plain, False), (varied, True)):
-        scores = _by_run(path, "linear", "C4")
+    for paths, is_varied in (([plain], False), (varied, True)):
+        fits = [_by_run(path, "linear", "C4") for path in paths]
         for figure in FIGURES:
-            yield figure.row(scores, is_varied)
-    ratio = _over(varied, "linear", "C1")
-    yield Row("c4_over_c1_error", "of C1's", [ratio], limit=C4_OVER_C1)
-    ratio = _over(varied, "table", "C1")
-    yield Row("c4_over_table_error", "of the table of means'", [ratio], limit=C4_OVER_TABLE)
+            yield figure.row(fits, is_varied)
+    ratios = [_over(path, "linear") for path in varied]
+    yield Row("c4_over_c1_error", "of C1's", ratios, limit=C4_OVER_C1)
+    ratios = [_over(path, "table") for path in varied]
+    yield Row("c4_over_table_error", "of the table of means'", ratios, limit=C4_OVER_TABLE)
 
 
 def _by_run(path: Path, model: str, predictors: str) -> list[dict[str, Any]]:
@@ -88,10 +89,11 @@ def _by_run(path: Path, model: str, predictors: str) -> list[dict[str, Any]]:
     return [each for each in read_json(path)["scores"] if wanted.items() <= each.items()]
 
 
-def _over(path: Path, model: str, predictors: str) -> float:
-    """Return C4's mean error of the x of the centre of mass over a rival's, the worse pair's."""
-    mine, rival = (
+def _over(path: Path, rival: str) -> float:
+    """Return C4's mean error of the x of the centre of mass over a rival's, which sees C1: the
+    worse pair's."""
+    mine, others = (
         {each["pair"]: each["error"] for each in _by_run(path, *which) if _com("x")(each)}
-        for which in (("linear", "C4"), (model, predictors))
+        for which in (("linear", "C4"), (rival, "C1"))
     )
-    return max(mine[pair] / rival[pair] for pair in mine)
+    return max(mine[pair] / others[pair] for pair in mine)

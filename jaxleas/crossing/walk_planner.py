@@ -16,6 +16,7 @@ from jaxleas.footsteps import (
     buffer_of,
     read_motion_model,
     read_proposal,
+    require_footing,
     require_goal,
     shipped_model,
     shipped_proposal,
@@ -56,4 +57,5 @@ def costs_of(
     costs = FootCostMap.of(height_map, buffer)
     for goal in goals:
         require_goal(goal, costs)
+        require_footing(goal, costs)
     return costs

@@ -57,5 +57,6 @@ from .shipped_models import shipped_model as shipped_model
 from .swing_choice import SwingChoice as SwingChoice
 from .walking_state import Goal as Goal
 from .walking_state import WalkingState as WalkingState
+from .walking_state import require_footing as require_footing
 from .walking_state import require_goal as require_goal
 from .walking_state import require_start as require_start

@@ -11,7 +11,7 @@ from jaxleas.footsteps.search import SearchSettings, plan_footsteps, settings_fo
 from jaxleas.footsteps.search_costs import Cost
 from jaxleas.footsteps.shipped_models import shipped_model_of
 from jaxleas.footsteps.state_file import named_in_state, read_state, write_plan
-from jaxleas.footsteps.walking_state import require_goal, require_start
+from jaxleas.footsteps.walking_state import require_footing, require_goal, require_start
 from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
 
 
@@ -59,6 +59,7 @@ def plan(
     height_map = import_terrain(terrain, reading)
     costs = FootCostMap.of(height_map, buffer_of(model) if buffer is None else buffer)
     require_goal(target, costs)
+    require_footing(target, costs)
     require_start(start, costs, model.controller)
     if picture is not None:
         draw_cost_map(height_map, costs, picture)

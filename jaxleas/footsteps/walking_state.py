@@ -135,6 +135,26 @@ def require_goal(goal: Goal, costs: FootCostMap) -> None:
         )
 
 
+FOOTING = 0.25
+"""Distance from a goal within which a foot must be able to stand [m]: a robot's feet are wider
+apart, and a goal is where its centre of mass comes to rest."""
+
+
+def require_footing(goal: Goal, costs: FootCostMap) -> None:
+    """Refuse a goal that is over no ground on which a foot may stand.
+
+    Raises:
+        InputError: the message has the nearest safe cell.
+    """
+    nearest = costs.nearest_safe(np.array([goal.x, goal.y]))
+    away = float(np.hypot(goal.x - nearest[0], goal.y - nearest[1]))
+    if not away <= FOOTING:
+        raise InputError(
+            f"the goal ({goal.x:g}, {goal.y:g}) is {away:.2f} m away from where a foot may stand:"
+            f" the nearest safe cell is ({nearest[0]:.2f}, {nearest[1]:.2f})"
+        )
+
+
 def distance_at(costs: FootCostMap, point: Float[np.ndarray, "2"]) -> float:
     """Return the distance from unsafe cells of the cell around a point [m]; 0 outside the map."""
     cells = np.floor(

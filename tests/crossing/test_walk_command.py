@@ -7,7 +7,7 @@ import pytest
 
 from jaxleas import cli
 from jaxleas.controllers import CONTROLLERS, find_controller
-from jaxleas.crossing import NotReachedError, read_walk_log
+from jaxleas.crossing import NotReachedError, read_walk_log, standing_on
 from jaxleas.files import read_npz, write_npz
 from jaxleas.footsteps import read_motion_model, shipped_model, write_motion_model
 from jaxleas.footsteps.way_left import Strides
@@ -99,6 +99,7 @@ def test_where_no_command_is_safe_it_stands_and_says_why(tmp_path, capsys):
     ("options", "message"),
     [
         (("--goal", "9,0"), r"the goal \(9, 0\) is outside the map, which has x from"),
+        (("--goal", "1.62,0"), r"the goal \(1.62, 0\) is 0.\d+ m away from where a foot may stand"),
         (("--goal", "there"), "--goal is 'there'; give X,Y or X,Y,YAW"),
         (("--goal", "1,0", "--start", "1.0,0"), "no ground under foot LF"),
         (("--goal", "1,0", "--start", "0.82,0"), r"foot LF starts on an unsafe cell at .*nearest"),
@@ -113,6 +114,14 @@ def test_where_no_command_is_safe_it_stands_and_says_why(tmp_path, capsys):
 def test_what_cannot_be_walked_is_refused(scene, options, message):
     with pytest.raises(InputError, match=message):
         walk(scene, *options)
+
+
+def test_feet_that_would_hang_in_the_air_are_refused():
+    surfaces = {"high": rectangle(-1.0, 0.3, -1.0, 1.0), "low": rectangle(0.3, 2.0, -1.0, 1.0)}
+    surfaces["low"] = surfaces["low"] - np.array([0.0, 0.0, 0.18])
+    message = r"ground under foot LF at .* 18 cm below that of another foot"
+    with pytest.raises(InputError, match=message):
+        standing_on(Scene(surfaces), load_body("anymal_b"), [(0.0, 0.0, 0.0)])
 
 
 def test_a_controller_without_shipped_models_is_told_how_to_make_them():

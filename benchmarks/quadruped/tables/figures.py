@@ -13,8 +13,10 @@ from jaxleas.terrain import SceneEdges
 Walk = list[dict[str, Any]]
 """Footsteps of one robot, as `walked.measure` returns them."""
 PREDICTED, WALKED, NEAR = "#1a8a3a", "#1f5fbf", "#f2a29b"
-GROUND = ("#f4f4f0", "#8d8d85")
+GROUND = ("#85857d", "#f4f4f0")
 """Colours of the lowest and of the highest surface."""
+FOOT_RADIUS = 0.031
+"""Radius of the ball at the end of ANYmal B's legs, whose middle is measured [m]."""
 
 
 def draw(course: Course, walk: Walk, path: Path) -> None:
@@ -49,7 +51,7 @@ def draw(course: Course, walk: Walk, path: Path) -> None:
 
 
 def _ground(plot: Any, course: Course, low: np.ndarray, high: np.ndarray) -> None:
-    """Draw surfaces, the higher the darker, and what is too near an edge."""
+    """Draw surfaces, the higher the lighter, and what is too near an edge."""
     from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.patches import Patch, Polygon
 
@@ -95,7 +97,7 @@ def _landings(plot: Any, walk: Walk, axis: int, label: bool) -> None:
         axis: axis that is drawn upwards: 1 is y, 2 is z.
         label: whether the legend names them.
     """
-    feet = np.concatenate([each["feet"] for each in walk])
+    feet = np.concatenate([each["feet"] for each in walk]) - [0.0, 0.0, FOOT_RADIUS]
     predicted = np.concatenate([each["planned"]["feet"] for each in walk if each["planned"]])
     names = ("landing", "predicted landing") if label else (None, None)
     style = {"ls": "", "ms": 5, "mew": 0.9}
