@@ -8,7 +8,16 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.contacts.rows import Row, milliseconds
-from jaxleas.contacts import attempt, certify, parse_problem, plan_mip, plan_sl1m
+from jaxleas.contacts import (
+    ContactProblem,
+    attempt,
+    certify,
+    certify_infeasible,
+    parse_problem,
+    plan_astar,
+    plan_mip,
+    plan_sl1m,
+)
 
 MODELS = ("two_com", "feet")
 
@@ -23,23 +32,60 @@ def on_reference(problems: Path, polytopes: Path) -> Iterator[Row]:
         problems: file of the contact problems, contact-problems.jsonl.gz.
         polytopes: file of the step polytopes, talos-polytopes.json.
     """
-    with gzip.open(problems, "rt") as stream:
-        entries = [json.loads(line) for line in stream]
-    sets = json.loads(polytopes.read_text())["sets"]
+    entries, sets = _read(problems, polytopes)
     for model in MODELS:
         yield from _with_model(model, entries, sets)
+
+
+def sets_on_reference(problems: Path, polytopes: Path) -> Iterator[Row]:
+    """Judge the search over sets of places on the robust entries of both models, and its proofs.
+
+    Args:
+        problems: file of the contact problems, contact-problems.jsonl.gz.
+        polytopes: file of the step polytopes, talos-polytopes.json.
+    """
+    entries, sets = _read(problems, polytopes)
+    right, times, held = [], [], []
+    for model in MODELS:
+        for entry, asked, feasible in _robust(model, entries, sets):
+            taken, plan = milliseconds(lambda p=asked: plan_astar(p, diagnose=False), 1)
+            times += taken
+            right.append(plan.status == ("feasible" if feasible else "infeasible"))
+            if not right[-1]:
+                print(f"{entry['id']} {model}: {plan.status}", flush=True)
+            if plan.proof is not None:
+                held.append(certify_infeasible(asked, plan.proof).holds)
+    print(f"{sum(right)} of {len(right)} right, {sum(held)} of {len(held)} proofs hold", flush=True)
+    yield Row("astar_reference_right", "%", [100.0 * float(np.mean(right))], None, 100.0, "higher")
+    yield Row(
+        "astar_reference_proofs_held", "%", [100.0 * float(np.mean(held))], None, 100.0, "higher"
+    )
+    yield Row("astar_reference_median", "ms", [float(np.median(times))])
+
+
+def _read(problems: Path, polytopes: Path) -> tuple[list[dict], dict]:
+    with gzip.open(problems, "rt") as stream:
+        entries = [json.loads(line) for line in stream]
+    return entries, json.loads(polytopes.read_text())["sets"]
+
+
+def _robust(
+    model: str, entries: list[dict], sets: dict
+) -> Iterator[tuple[dict, ContactProblem, bool]]:
+    """Yield each robust entry, its problem, and whether this has a plan."""
+    for entry in entries:
+        verdict = entry["verdict"][model]
+        if verdict["robust"]:
+            described = {**entry["problem"], "model": model}
+            described["polytopes"] = sets[described["polytopes"]]
+            asked = parse_problem(entry["id"], described)
+            yield entry, asked, verdict["status"] == "feasible"
 
 
 def _with_model(model: str, entries: list[dict], sets: dict) -> Iterator[Row]:
     right, mip, sized, first, sl1m, violations = [], [], [], [], [], [0.0]
     solved, false, published = 0, 0, 0
-    for entry in entries:
-        verdict = entry["verdict"][model]
-        if not verdict["robust"]:
-            continue
-        described = {**entry["problem"], "model": model}
-        described["polytopes"] = sets[described["polytopes"]]
-        asked, feasible = parse_problem(entry["id"], described), verdict["status"] == "feasible"
+    for entry, asked, feasible in _robust(model, entries, sets):
         times, plan = milliseconds(lambda p=asked: plan_mip(p, diagnose=False), 3)
         right.append(plan.feasible == feasible and plan.status in ("feasible", "infeasible"))
         mip.append(float(np.median(times)))

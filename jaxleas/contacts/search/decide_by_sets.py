@@ -2,16 +2,17 @@
 
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from jaxleas.contacts.problem import ContactProblem
-from jaxleas.contacts.programs.com import with_first_cuts
 from jaxleas.contacts.programs.constraints import make_constraints
 from jaxleas.contacts.programs.placement import Placement, place
+from jaxleas.contacts.search.advance import Advance
 from jaxleas.contacts.search.best_first import BestFirst, Graph, OutOfTimeError
+from jaxleas.contacts.search.displacements import SLACK
 from jaxleas.contacts.search.forward_sets import ForwardSets, PlaceSet
 from jaxleas.contacts.search.hopeless import surfaces_that_lead_on
 
@@ -32,6 +33,7 @@ class SetsDecision:
         sets: the problem's sets, for a proof.
         kept: sets that no other one holds.
         leading: surfaces that lead on after each number of steps.
+        advance: how far towards the goal the anchor must be.
         images: sets that follow from each one by a step onto surfaces that lead on.
         expansions: number of sets stepped from.
     """
@@ -42,6 +44,7 @@ class SetsDecision:
     sets: ForwardSets | None = None
     kept: Kept = field(default_factory=dict)
     leading: list[frozenset[str]] = field(default_factory=list)
+    advance: Advance | None = None
     images: dict[PlaceSet, list[PlaceSet]] = field(default_factory=dict)
     expansions: int = 0
 
@@ -59,13 +62,14 @@ def decide_by_sets(problem: ContactProblem, deadline: float = np.inf) -> SetsDec
     sets = ForwardSets(problem)
     leading = surfaces_that_lead_on(sets)
     kept: Kept = defaultdict(list)
+    advance = Advance.of(sets)
     images: dict[PlaceSet, list[PlaceSet]] = {}
-    search = BestFirst(_graph(sets, leading, kept, images))
+    search = BestFirst(_graph(sets, (leading, advance), kept, images))
     marginal = False
     try:
         for goal in search.goals([sets.start], deadline):
             surfaces = tuple(each.landed for each in goal.path()[1:])
-            placement = _place(problem, surfaces, deadline)
+            placement = _place(sets, surfaces, deadline)
             if placement.status == "optimal":
                 return SetsDecision("optimal", surfaces, placement, expansions=search.expansions)
             if placement.status != "infeasible":
@@ -74,22 +78,28 @@ def decide_by_sets(problem: ContactProblem, deadline: float = np.inf) -> SetsDec
     except OutOfTimeError:
         return SetsDecision("time_limit", expansions=search.expansions)
     status = "marginal" if marginal else "infeasible"
-    return SetsDecision(status, (), None, sets, kept, leading, images, search.expansions)
+    return SetsDecision(status, (), None, sets, kept, leading, advance, images, search.expansions)
 
 
-def _place(problem: ContactProblem, surfaces: tuple[str, ...], deadline: float) -> Placement:
-    constraints = with_first_cuts(problem, make_constraints(problem), len(problem))
-    return place(problem, constraints, surfaces, deadline)
+def _place(sets: ForwardSets, surfaces: tuple[str, ...], deadline: float) -> Placement:
+    """Place the feet, with all faces of the displacements, so that no cut is left to be found."""
+    constraints = []
+    for constraint, move in zip(make_constraints(sets.problem), sets.moves, strict=True):
+        assert move.body is not None
+        link = replace(constraint.link, A=move.body.normals, b=move.body.offsets - SLACK)
+        constraints.append(replace(constraint, links=(link,)))
+    return place(sets.problem, constraints, surfaces, deadline)
 
 
 def _graph(
     sets: ForwardSets,
-    leading: list[frozenset[str]],
+    hope: tuple[list[frozenset[str]], Advance],
     kept: Kept,
     images: dict[PlaceSet, list[PlaceSet]],
 ) -> Graph[PlaceSet]:
     """Return the sets as a graph: each step costs one, and exactly the rest remains."""
     count = len(sets.problem)
+    leading, advance = hope
 
     def successors(held: PlaceSet) -> list[tuple[float, PlaceSet]]:
         move = sets.moves[held.step]
@@ -98,7 +108,7 @@ def _graph(
         return [(1.0, each) for each in images[held]]
 
     def heuristic(held: PlaceSet) -> float:
-        if held.surface not in leading[held.step]:
+        if held.surface not in leading[held.step] or advance.falls_short(held):
             return np.inf
         return float(count - held.step)
 
