@@ -1,7 +1,7 @@
 """Files that come with the package: configurations, and policies trained from them.
 
 They stand at the top of the repository, where people look for them. The wheel holds the same files
-inside the package (`pyproject.toml`, force-include), because a wheel has no other place.
+inside the package (`pyproject.toml`, sources), because a wheel has no other place.
 """
 
 import re
