@@ -68,16 +68,21 @@ def measure(course: Course, starts: Starts, is_drawn: bool) -> dict[str, Any]:
     return {
         "starts": starts.count,
         "planned": _runs(found, edges),
-        "blind": {str(speed): _blind(course, starts, speed, edges) for speed in SPEEDS},
+        "blind": _blind(course, starts, edges),
         "times": asdict(_timed(course, asked)),
         "load": round(os.getloadavg()[0], 1),
         "walk": _walk(found.crossings[0], found.controller) if is_drawn else [],
     }
 
 
-def _blind(course: Course, starts: Starts, speed: float, edges: SceneEdges) -> list[dict[str, Any]]:
-    found = crossed_blind(course, starts.count, starts.seed, (speed,))
-    return _runs(shown(f"{course.name}, blind at {speed:g}", found), edges)
+def _blind(course: Course, starts: Starts, edges: SceneEdges) -> dict[str, list[dict[str, Any]]]:
+    """Return what became of blind robots, by speed over the largest."""
+    found = shown(f"{course.name}, blind", crossed_blind(course, starts.count, starts.seed, SPEEDS))
+    runs = _runs(found, edges)  # all starts at the first speed come first
+    return {
+        str(speed): runs[index * starts.count : (index + 1) * starts.count]
+        for index, speed in enumerate(SPEEDS)
+    }
 
 
 def _runs(found: Crossed, edges: SceneEdges) -> list[dict[str, Any]]:
