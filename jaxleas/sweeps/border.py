@@ -133,13 +133,19 @@ def _vectorised(config: SweepConfig, base: RunConfig, source: str, on_host: bool
         for each in config.objectives
     )
     if config.vectorised == "auto":
-        return other is None and config.pruner == "none" and not timed and not on_host
+        alone = on_host or timed or bool(base.begin)
+        return other is None and config.pruner == "none" and not alone
     if not config.vectorised:
         return False
     if on_host:
         raise InputError(
             f"{source}: vectorised is true, but the task {base.env.task} steps on the host, one"
             " training at a time: leave vectorised out"
+        )
+    if base.begin:
+        raise InputError(
+            f"{source}: vectorised is true, but trials of one program begin untrained: leave"
+            " vectorised out, or begin"
         )
     if other is not None:
         raise InputError(

@@ -117,3 +117,8 @@ def _require_vectorised(base: RunConfig, path: Path, allow: Collection[str]) -> 
             f"{path}: the task {base.env.task} steps on the host, one training at a time, and a"
             " population is one compiled program: sweep over its configuration with jaxleas sweep"
         )
+    if base.begin:
+        raise InputError(
+            f"{path}: begin: members of a population begin untrained: leave it out, or sweep over"
+            " the configuration with jaxleas sweep"
+        )

@@ -146,6 +146,9 @@ class RunConfig(Strict, Generic[Env, Worlds]):
 
     seed: Seed = 0
     """Seed of everything random in training except the terrain."""
+    begin: str = ""
+    """Policy file whose actor the training begins with, beside an untrained critic; none where
+    empty. A resumed run continues its own."""
     watch: tuple[Literal["tensorboard", "wandb", "mlflow"], ...] = ("tensorboard",)
     """Watchers that receive the metrics, besides metrics.jsonl; wandb and mlflow are extras."""
     # A section that is left out takes its defaults, of the type that the task prescribes.

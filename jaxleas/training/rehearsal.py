@@ -28,13 +28,16 @@ from jaxleas.envs import (
     section_of,
 )
 from jaxleas.terrain import HELD_OUT_SEED
+from jaxleas.training.beginning import actor_to_begin_with
 from jaxleas.training.config import RunConfig
+from jaxleas.training.networks import make_networks
 from jaxleas.training.ppo_params import PpoParams
 from jaxleas.types import InputError, OwnCodeError
 
 
 def rehearse(config: RunConfig, task: Task) -> None:
-    """Refuse a user's own task whose methods do not keep the protocol; others are not called.
+    """Refuse a policy to begin with that does not suit the run, and a user's own task whose methods
+    do not keep the protocol; methods of other tasks are not called.
 
     Args:
         config: configuration of the run.
@@ -43,7 +46,10 @@ def rehearse(config: RunConfig, task: Task) -> None:
     Raises:
         OwnCodeError: a method raises an exception, or gives what cannot be used; one sentence says
             which, what it gave, and what would do.
+        InputError: the policy to begin with does not suit the run.
     """
+    if config.begin:
+        actor_to_begin_with(config, make_networks(config.network, task.signature))
     if is_own(config.env.task):
         _require_numbers(task)
         _Rehearsal(config, task).run()

@@ -8,6 +8,7 @@ from jaxleas.runs import (
     NoCheckpointError,
     RunFolder,
 )
+from jaxleas.training.beginning import begun_with
 from jaxleas.training.policy import read_policy, write_policy
 from jaxleas.training.processes import from_first
 from jaxleas.training.train_state import Learned, TrainState
@@ -42,6 +43,8 @@ def first_state(
         step, state, note = found or (0, like, {"best": -1.0})
         return step, trainer.place(state), _best_score(note, step)
     state = trainer.fresh_state()
+    if learned is None:
+        learned = begun_with(trainer.config, trainer.networks, state)
     if learned is not None:
         state = trainer.place(learned.into(state))
     kept = trainer.gather(state)
