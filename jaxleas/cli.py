@@ -74,10 +74,20 @@ COMMANDS = {
         "fit",
         "fit motion models to a controller's footsteps",
     ),
-    "gait plan": (
+    "gait footsteps": (
         "jaxleas.footsteps.plan_command",
         "plan",
         "plan the next footsteps of a controller",
+    ),
+    "gait imitate": (
+        "jaxleas.gaits.imitate_command",
+        "imitate",
+        "teach a gait policy what the search does, to begin a training with",
+    ),
+    "gait plan": (
+        "jaxleas.gaits.plan_command",
+        "plan",
+        "plan a quadruped's support phases to a goal",
     ),
     "gait distill": (
         "jaxleas.crossing.distill_command",

@@ -19,7 +19,16 @@ ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "xla", "files", "configuration", "workers", "runs", "geometry", "robots", "terrain"),
     *("dynamics", "conditions", "contacts", "physics", "controllers", "envs", "training", "guide"),
-    *("labels", "surrogates", "multicontact", "footsteps", "crossing", "evaluation", "reports"),
+    *(
+        "labels",
+        "surrogates",
+        "multicontact",
+        "footsteps",
+        "gaits",
+        "crossing",
+        "evaluation",
+        "reports",
+    ),
     *("distillation", "sweeps", "records", "export", "viewer"),
     *("cli_guard", "cli_options", "train_command", "cli", "__main__"),
 )

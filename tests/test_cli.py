@@ -141,7 +141,7 @@ LOAD_NO_CODE = {
         "contacts export",
         "label",
     ),  # a planner is named on the command line itself
-    *("runs", "compare", "gait fit", "gait plan", "gait course", "transition check"),  # plain
+    *("runs", "compare", "gait fit", "gait footsteps", "gait course", "transition check"),  # plain
 }
 
 

@@ -1,4 +1,4 @@
-"""The function behind `jaxleas gait plan`."""
+"""The function behind `jaxleas gait footsteps`."""
 
 from dataclasses import replace
 from pathlib import Path

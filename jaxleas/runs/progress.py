@@ -22,6 +22,7 @@ class Progress:
         start: number of steps done before (when resuming).
         every_seconds: pause between plain lines [s].
         stream: stream to write to; standard error by default.
+        unit: what a step is called.
     """
 
     def __init__(
@@ -30,7 +31,9 @@ class Progress:
         start: int = 0,
         every_seconds: float = 10.0,
         stream: TextIO | None = None,
+        unit: str = "steps",
     ) -> None:
+        self._unit = unit
         self.total = max(total, 1)
         self._done = start
         self._every_seconds = every_seconds
@@ -104,8 +107,8 @@ class Progress:
         left = (self.total - self._done) / self._rate if self._rate > 0 else float("inf")
         parts = [
             f"{100 * self._done / self.total:3.0f} %",
-            f"{self._done:,} steps",
-            f"{self._rate:,.0f} steps/s",
+            f"{self._done:,} {self._unit}",
+            f"{self._rate:,.0f} {self._unit}/s",
             *(f"{name} {value}" for name, value in values.items()),
             f"{_clock(left)} left",
         ]

@@ -85,12 +85,18 @@ STATE = {
 
 @pytest.fixture
 def world(folder, tmp_path):
-    """Options of `gait plan` on flat ground."""
+    """Options of `gait footsteps` on flat ground."""
     flat = HeightMap(np.zeros((100, 200), np.float32), 0.02, (-1.0, -1.0))
     write_height_map(tmp_path / "flat.npz", flat)
     write_json(tmp_path / "state.json", STATE)
     return [
-        *("gait", "plan", str(tmp_path / "flat.npz"), "--models", str(folder / "fit/model.npz")),
+        *(
+            "gait",
+            "footsteps",
+            str(tmp_path / "flat.npz"),
+            "--models",
+            str(folder / "fit/model.npz"),
+        ),
         *("--state", str(tmp_path / "state.json"), "--out", str(tmp_path / "plan.json")),
     ]
 

@@ -54,6 +54,27 @@ def command_of(config: GaitPlanningConfig, action: Any) -> Command:
     )
 
 
+def action_of(config: GaitPlanningConfig, command: Command) -> dict[str, np.ndarray]:
+    """Return the action by head, cut at the ends of its ranges, whose command this is.
+
+    Args:
+        config: configuration of the task, whose contact code is five_way.
+        command: commands in physical units.
+    """
+    scales = config.action
+    numbers = (
+        command.turn[:, None] / scales.turn,
+        command.step / scales.step,
+        command.velocity / scales.speed,
+        command.feet.reshape(len(command.turn), -1) / scales.foot,
+        (command.times - scales.middle_time) / scales.time,
+    )
+    return {
+        "phase": np.concatenate(numbers, axis=1).clip(-1.0, 1.0),
+        "support": np.asarray(command.support),
+    }
+
+
 def candidate_of(
     config: GaitPlanningConfig, ground: Ground, state: PlanningState, command: Command
 ) -> Phases:
@@ -63,7 +84,8 @@ def candidate_of(
     place = now.com[:, :2] + rotate(now.yaw, command.step)
     nominal = config.robot.nominal[:, :2] + command.feet
     feet = np.empty(now.feet.shape)
-    feet[..., :2] = place[:, None] + rotate(yaw, nominal)
+    proposed = place[:, None] + rotate(yaw, nominal)
+    feet[..., :2] = ground.snapped(state.field[:, None], proposed, config.snap)
     feet[..., 2] = ground.heights_at(state.field[:, None], feet[..., :2])
     stays = in_contact(now.support) & in_contact(command.support)
     feet = np.where(stays[..., None], now.feet, feet)

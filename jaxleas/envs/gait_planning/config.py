@@ -106,6 +106,9 @@ class GaitPlanningConfig(TaskConfig):
     """Instants of each phase at which CROC is checked."""
     foot_clearance: NonNegative = 0.05
     """Distance of footholds from changes of height [m]."""
+    snap: NonNegative = 0.0
+    """Distance within which a proposed foothold that is not safe moves to the nearest safe cell
+    [m]. D has 0: a policy must place each foot itself, to the centimetre."""
     edge_rise: Positive = 0.01
     """Change of height between neighbouring cells that counts [m]."""
     goal_radius: Positive = 0.5

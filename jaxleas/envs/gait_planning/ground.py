@@ -1,10 +1,12 @@
 """The fields that gaits are planned on: their heights, and where a foot may stand."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from flax import struct
-from jaxtyping import Bool, Float, Float32, Int
+from jaxtyping import Bool, Float, Float32, Int, Int32
+from scipy import ndimage
 
 from jaxleas.envs.gait_planning.config import GaitPlanningConfig, GaitWorldsConfig
 from jaxleas.terrain import FIELD_KINDS, EdgeSearch, HeightMap, draw_field, find_edges
@@ -22,24 +24,65 @@ class Ground:
         safe: whether a foot may stand anywhere in the cell.
         kind: kind of each field, an index of `FIELD_KINDS`.
         resolution: side of a cell [m].
+        nearest: for each cell the nearest one that is safe, counted row by row through its field;
+            None where footholds are never moved.
     """
 
     heights: Float32[np.ndarray, "fields rows columns"]
     safe: Bool[np.ndarray, "fields rows columns"]
     kind: Int[np.ndarray, " fields"]
     resolution: float = struct.field(pytree_node=False)
+    nearest: Int32[np.ndarray, "fields rows columns"] | None = None
 
     def heights_at(
         self, field: Int[np.ndarray, "*#batch"], points: Float[np.ndarray, "*batch 2"]
     ) -> Float32[np.ndarray, "*batch"]:
         """Return the heights of points in the fields' frames [m]."""
-        return self.heights.reshape(-1)[self._cells(field, points)]
+        return self.looked_up(self.heights, field, points)
 
     def safe_at(
         self, field: Int[np.ndarray, "*#batch"], points: Float[np.ndarray, "*batch 2"]
     ) -> Bool[np.ndarray, "*batch"]:
         """Return whether a foot may stand at each point."""
-        return self.safe.reshape(-1)[self._cells(field, points)]
+        return self.looked_up(self.safe, field, points)
+
+    def looked_up(
+        self,
+        cells: np.ndarray,
+        field: Int[np.ndarray, "*#batch"],
+        points: Float[np.ndarray, "*batch 2"],
+    ) -> np.ndarray:
+        """Return the values of the cells that points in the fields' frames lie in.
+
+        Args:
+            cells: a value for each cell [fields, rows, columns].
+            field: index of each point's field.
+            points: points [m].
+        """
+        return cells.reshape(-1)[self._cells(field, points)]
+
+    def snapped(
+        self,
+        field: Int[np.ndarray, "*#batch"],
+        points: Float[np.ndarray, "*batch 2"],
+        most: float,
+    ) -> Float[np.ndarray, "*batch 2"]:
+        """Return points on safe cells, moved to the middle of the nearest one where they are not.
+
+        Args:
+            field: index of each point's field.
+            points: points [m].
+            most: distance from which on a point stays where it is [m].
+        """
+        if self.nearest is None:
+            return points
+        rows, columns = self.heights.shape[1:]
+        cell = self._cells(field, points) % (rows * columns)
+        nearest = self.looked_up(self.nearest, field, points)
+        row, column = np.divmod(nearest, columns)
+        middle = self.resolution * (np.stack([column, row], axis=-1) + 0.5)
+        near = np.linalg.norm(middle - points, axis=-1) < most
+        return np.where((near & (nearest != cell))[..., None], middle, points)
 
     @property
     def size(self) -> Float[np.ndarray, "2"]:
@@ -89,7 +132,14 @@ def ground_of(
     safe = [safe_cells(config, field) for field in framed]
     heights = np.stack([field.heights for field in framed])
     filled = np.where(is_ground(heights), heights, np.float32(NO_GROUND))
-    return Ground(filled, np.stack(safe), kinds, fields[0].resolution)
+    nearest = np.stack([_nearest(each) for each in safe]) if config.snap else None
+    return Ground(filled, np.stack(safe), kinds, fields[0].resolution, nearest)
+
+
+def _nearest(safe: Bool[np.ndarray, "rows columns"]) -> Int32[np.ndarray, "rows columns"]:
+    """Return the number of the safe cell nearest to each cell."""
+    found: Any = ndimage.distance_transform_edt(~safe, return_distances=False, return_indices=True)
+    return (found[0] * safe.shape[1] + found[1]).astype(np.int32)
 
 
 def safe_cells(config: GaitPlanningConfig, field: HeightMap) -> Bool[np.ndarray, "rows columns"]:
@@ -98,8 +148,14 @@ def safe_cells(config: GaitPlanningConfig, field: HeightMap) -> Bool[np.ndarray,
     An edge cell touches the change, and a point of the cell asked for lies within half a cell of
     its middle: so the distance of their middles is one to be sure of.
     """
-    edges = find_edges(field, EdgeSearch(config.edge_rise, medians=0, closes=False))
-    return edges.distance >= config.foot_clearance
+    return edge_distance(config, field) >= config.foot_clearance
+
+
+def edge_distance(
+    config: GaitPlanningConfig, field: HeightMap
+) -> Float[np.ndarray, "rows columns"]:
+    """Return the distance of each cell from the nearest change of height [m]."""
+    return find_edges(field, EdgeSearch(config.edge_rise, medians=0, closes=False)).distance
 
 
 def _framed(field: HeightMap) -> HeightMap:

@@ -237,3 +237,24 @@ def test_the_published_code_decides_like_the_head(ground):
     np.testing.assert_array_equal(first.phase.feet, second.phase.feet)
     assert five.signature.action_size == 16
     assert published.signature.action_size == 18
+
+
+def test_a_proposed_foothold_moves_to_the_nearest_safe_cell_within_the_distance(task):
+    config = make_task(snap=0.08).config
+    heights = np.zeros((60, 100), np.float32)
+    heights[:, 40:50] = np.nan  # a gap across x = 0.8 to 1.0 m
+    ground = ground_of(config, [HeightMap(heights, 0.02, (0.01, 0.01))], np.zeros(1, int))
+    points = np.array([[0.5, 0.6], [0.78, 0.6], [0.9, 0.6], [1.03, 0.61]])
+    moved = ground.snapped(np.zeros(4, int), points, config.snap)
+    np.testing.assert_array_equal(moved[0], points[0])  # safe
+    np.testing.assert_array_equal(moved[2], points[2])  # too far from any safe cell
+    for before, after in zip(points[[1, 3]], moved[[1, 3]], strict=True):
+        away = np.linalg.norm(safe_middles(ground) - before, axis=1)
+        assert np.linalg.norm(after - before) == pytest.approx(away.min(), abs=1e-6)
+    plain = ground_of(task.config, [HeightMap(heights, 0.02, (0.01, 0.01))], np.zeros(1, int))
+    np.testing.assert_array_equal(plain.snapped(np.zeros(4, int), points, 0.0), points)
+
+
+def safe_middles(ground):
+    rows, columns = np.nonzero(ground.safe[0])
+    return ground.resolution * (np.stack([columns, rows], axis=1) + 0.5)
