@@ -1,5 +1,6 @@
 """A sweep's study in Optuna: new or continued; it gives out trials one number at a time."""
 
+import time
 import warnings
 from dataclasses import asdict
 from pathlib import Path
@@ -16,6 +17,8 @@ from jaxleas.sweeps.storage import open_storage, require_optuna
 from jaxleas.types import InputError
 
 OWNER, SWEEP, RESULT = "owner", "sweep", "result"  # attributes of trials and study
+DRAWING = 5.0
+"""Time for which a trial without an owner may be one that another machine is drawing [s]."""
 
 
 class Study:
@@ -33,6 +36,7 @@ class Study:
         """
         self._optuna = require_optuna()
         self.sweep, self._owner = sweep, folder.owner
+        self._shared = storage is not None
         directions = [
             "maximize" if is_maximised(each) else "minimize" for each in sweep.config.objectives
         ]
@@ -64,8 +68,7 @@ class Study:
 
     def open_trials(self) -> list[Any]:
         """Return the trials that this machine drew and has not reported yet, by number."""
-        state = self._optuna.trial.TrialState.RUNNING
-        trials = self._study.get_trials(deepcopy=False, states=(state,))
+        trials = self._running()
         ours = [each for each in trials if each.user_attrs.get(OWNER, self._owner) == self._owner]
         # A trial without an owner was being drawn when its machine was killed. It is ours if the
         # storage is not shared; otherwise the machine that takes it first continues it.
@@ -75,6 +78,16 @@ class Study:
                 self._choose_sampler(each.number)
                 opened.append(self._optuna.trial.Trial(self._study, each._trial_id))
         return opened
+
+    def _running(self) -> list[Any]:
+        """Return the trials that run, when no other machine is about to draw one's values."""
+        state = self._optuna.trial.TrialState.RUNNING
+        end = time.monotonic() + (DRAWING if self._shared else 0.0)
+        while True:
+            trials = self._study.get_trials(deepcopy=False, states=(state,))
+            if all(OWNER in each.user_attrs for each in trials) or time.monotonic() >= end:
+                return trials
+            time.sleep(0.05)
 
     def ask(self) -> Any | None:
         """Return a new trial; None when all numbers have been given out."""

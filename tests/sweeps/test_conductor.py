@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from jaxleas.files import InUseError, write_json
+from jaxleas.sweeps import study as study_room
 from jaxleas.sweeps.border import open_sweep
 from jaxleas.sweeps.folder import open_folder
 from jaxleas.sweeps.job import LIFELINE, patiently
@@ -140,6 +141,21 @@ def test_two_machines_share_a_study_and_do_each_trial_once(tmp_path):
         assert each.exitcode == 0, log.read_text()
     runs = sorted(run.parent.name for run in tmp_path.glob("*/trials/*/seed_0"))
     assert runs == [f"{number:04d}" for number in range(4)]
+
+
+def test_a_trial_that_another_machine_is_drawing_is_not_taken_over(tmp_path, monkeypatch):
+    sweep = open_sweep(write_sweep(tmp_path, space=SPACE, trials=4))
+    storage = f"sqlite:///{tmp_path}/study.db"
+    folders = [open_folder(tmp_path / name, sweep) for name in ("first", "second")]
+    first, second = (Study(sweep, folder, storage) for folder in folders)
+    drawn = first.ask()
+    soon = threading.Timer(0.3, first.draw, [drawn])
+    soon.start()
+    assert second.open_trials() == []
+    soon.join()
+    monkeypatch.setattr(study_room, "DRAWING", 0.2)
+    killed = first.ask()  # and its values are never drawn
+    assert [each.number for each in second.open_trials()] == [killed.number]
 
 
 def test_ctrl_c_saves_and_says_how_to_go_on(tmp_path):
