@@ -141,7 +141,16 @@ LOAD_NO_CODE = {
         "contacts export",
         "label",
     ),  # a planner is named on the command line itself
-    *("runs", "compare", "gait fit", "gait footsteps", "gait course", "transition check"),  # plain
+    *(
+        "runs",
+        "compare",
+        "gait fit",
+        "gait footsteps",
+        "gait plan",
+        "gait imitate",
+        "gait course",
+        "transition check",
+    ),  # plain
 }
 
 
