@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import jax
 import numpy as np
+from jax import Array
 
 from jaxleas.envs.gait_planning import (
     GaitPlanning,
@@ -47,7 +48,6 @@ def walk_policy(policy: Policy, ground: Ground, start: PlanningState, most: int)
         most: largest number of phases.
     """
     task = GaitPlanning(policy.config, GaitWorldsConfig())
-    act = jax.jit(policy.action)
     weights = {f"reward.{name}": value for name, value in policy.config.reward}
     states, commands = [start], []
     ending: Ending = "budget"
@@ -55,7 +55,7 @@ def walk_policy(policy: Policy, ground: Ground, start: PlanningState, most: int)
     while len(commands) < most and ending == "budget":
         # An episode of training is cut after fewer phases.
         state = replace(states[-1], step=np.zeros_like(start.step))
-        action = jax.tree.map(np.asarray, act(task.look(ground, state)))
+        action = jax.tree.map(np.asarray, _act(policy, task.look(ground, state)))
         after, result = task.advance(ground, weights, state, action, ())
         if result.terminated[0]:
             ending, cause = "refused", _cause_of(result)
@@ -65,6 +65,11 @@ def walk_policy(policy: Policy, ground: Ground, start: PlanningState, most: int)
         if result.reached[0]:
             ending = "reached"
     return PolicyWay(gait_of(ending, states, commands), cause)
+
+
+@jax.jit  # of a function of the module: it is compiled once, not for each way
+def _act(policy: Policy, seen: dict[str, Array]) -> Any:
+    return policy.action(seen)
 
 
 def _cause_of(result: Any) -> str:
