@@ -13,13 +13,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import jax
 import numpy as np
 
 from benchmarks.contacts.rows import Row
-from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from benchmarks.measurements import others, this_machine, write_measurements
 from jaxleas.cli_guard import run_guarded
-from jaxleas.dynamics import Discretisation, margins_by_definition, one_of
+from jaxleas.dynamics import Discretisation, margins_by_definition
 from jaxleas.envs.gait_planning import (
     GaitPlanning,
     GaitPlanningConfig,
@@ -27,9 +26,15 @@ from jaxleas.envs.gait_planning import (
     Ground,
     PlanningState,
     Shares,
-    transitions_of,
 )
-from jaxleas.gaits import Gait, footing_of, search_crawls, walk_policy
+from jaxleas.gaits import (
+    Gait,
+    footing_of,
+    search_crawls,
+    taken,
+    transitions_along,
+    walk_policy,
+)
 from jaxleas.terrain import EVALUATION_SEED, FIELD_KINDS, TUNING_SEED
 from jaxleas.training import Policy, read_policy
 
@@ -65,9 +70,7 @@ def main(arguments: Sequence[str]) -> None:
         measured.append(row.measurement(machine))
         print(f"{row.name}: {measured[-1].value} {row.unit}", flush=True)
     if not given.held_out:
-        names = {each.name for each in measured}
-        before = read_measurements(OUT) if OUT.is_file() else []
-        write_measurements(OUT, [*(each for each in before if each.name not in names), *measured])
+        write_measurements(OUT, [*others(OUT, measured), *measured])
 
 
 def _rows(given: argparse.Namespace) -> Iterator[Row]:
@@ -100,38 +103,29 @@ def _judge(given: argparse.Namespace, kind: str) -> tuple[Judged, GaitPlanningCo
     ground = task.make_world(range(first, first + FIELDS), True)
     drawn = task.draw_starts(ground, np.random.default_rng(first), 4 * given.starts, True)
     valid = np.flatnonzero(drawn.valid)[: given.starts]
-    starts = jax.tree.map(lambda leaf: leaf[valid], drawn.state)
+    starts = taken(drawn.state, valid)
     begin = time.perf_counter()
+    footing = footing_of(config, ground)
     gaits: list[Gait] = []
     for place in range(0, len(valid), AT_ONCE):
-        some = jax.tree.map(lambda leaf, at=place: leaf[at : at + AT_ONCE], starts)
-        gaits += (
-            _searched(config, ground, some) if policy is None else _walked(policy, ground, some)
-        )
+        some = taken(starts, slice(place, place + AT_ONCE))
+        if policy is None:
+            gaits += search_crawls(config, footing, some)
+        else:
+            gaits += _walked(policy, ground, some)
         print(f"{kind}: {len(gaits)} of {len(valid)}", file=sys.stderr, flush=True)
     return Judged(gaits, (time.perf_counter() - begin) / len(valid)), config
 
 
-def _searched(config: GaitPlanningConfig, ground: Ground, starts: PlanningState) -> list[Gait]:
-    return search_crawls(config, footing_of(config, ground), starts)
-
-
 def _walked(policy: Policy, ground: Ground, starts: PlanningState) -> list[Gait]:
-    rows = range(len(starts.step))
-    one = [jax.tree.map(lambda leaf, row=row: leaf[row : row + 1], starts) for row in rows]
+    one = [taken(starts, slice(row, row + 1)) for row in range(len(starts.step))]
     return [walk_policy(policy, ground, start, PHASES).gait for start in one]
 
 
 def _margins(config: GaitPlanningConfig, gait: Gait) -> np.ndarray:
     """Return the margins of a way's programs, by HiGHS from their definition."""
-    before, after = (
-        jax.tree.map(lambda leaf, part=part: leaf[part], gait.states.phase)
-        for part in (slice(None, -1), slice(1, None))
-    )
-    transitions = transitions_of(config, before, after, gait.commands.times)
-    where = Discretisation(instants=config.instants)
-    rows = range(len(gait.commands.times))
-    return np.array([float(margins_by_definition(one_of(transitions, row), where)) for row in rows])
+    transitions = transitions_along(config, gait.states.phase, gait.commands.times)
+    return margins_by_definition(transitions, Discretisation(instants=config.instants))
 
 
 def _parser() -> argparse.ArgumentParser:

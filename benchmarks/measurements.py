@@ -103,6 +103,18 @@ def write_measurements(path: str | Path, measurements: Sequence[Measurement]) ->
     write_json(path, [each.model_dump(mode="json") for each in measurements])
 
 
+def others(path: str | Path, measured: Sequence[Measurement]) -> list[Measurement]:
+    """Return what a benchmark file holds besides some measurements; nothing without a file.
+
+    Args:
+        path: path of the file.
+        measured: measurements that are to take the places of those of their names.
+    """
+    names = {each.name for each in measured}
+    before = read_measurements(path) if Path(path).is_file() else []
+    return [each for each in before if each.name not in names]
+
+
 def read_measurements(path: str | Path) -> list[Measurement]:
     """Read a benchmark file.
 

@@ -18,7 +18,7 @@ from benchmarks.contacts.reference import on_reference, sets_on_reference
 from benchmarks.contacts.rows import Row
 from benchmarks.contacts.samples import against_samples_and_step
 from benchmarks.contacts.sets import without_guide
-from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from benchmarks.measurements import others, read_measurements, this_machine, write_measurements
 from jaxleas.cli_guard import UsageError, run_guarded
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,10 +46,7 @@ def main(arguments: Sequence[str]) -> None:
         for row in _rows(part, given):
             measured.append(row.measurement(machine))
             print(f"{row.name}: {measured[-1].value} {row.unit}", flush=True)
-        names = {each.name for each in measured}
-        before = read_measurements(out) if out.is_file() else []
-        kept = [each for each in before if each.name not in names]
-        write_measurements(out, [*kept, *measured])
+        write_measurements(out, [*others(out, measured), *measured])
 
 
 def _rows(part: str, given: argparse.Namespace) -> Iterator[Row]:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.contacts.rows import Row
-from benchmarks.measurements import read_measurements, this_machine, write_measurements
+from benchmarks.measurements import others, this_machine, write_measurements
 from benchmarks.quadruped.blind_rows import BLIND
 from benchmarks.quadruped.models import model_rows
 from benchmarks.quadruped.planned_rows import GAPS, PLANNED, STAIRS
@@ -42,10 +42,7 @@ def main(arguments: Sequence[str]) -> None:
             measured.append(row.measurement(machine))
             print(f"{row.name}: {measured[-1].value} {row.unit} {list(row.runs)}", flush=True)
         if not given.held_out:
-            names = {each.name for each in measured}
-            before = read_measurements(given.out) if given.out.is_file() else []
-            kept = [each for each in before if each.name not in names]
-            write_measurements(given.out, [*kept, *measured])
+            write_measurements(given.out, [*others(given.out, measured), *measured])
 
 
 def _starts(given: argparse.Namespace) -> Starts:

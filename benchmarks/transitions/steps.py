@@ -31,21 +31,13 @@ def random_action(seen: Any, generator: np.random.Generator) -> dict[str, np.nda
     }
 
 
-def action_of(file: str, config: GaitPlanningConfig) -> Act:
-    """Return the actions of a policy, which answers in physical units."""
-    policy, scales = read_policy(file), config.action
-    size = np.repeat(
-        [scales.turn, scales.step, scales.speed, scales.foot, scales.time], [1, 2, 2, 8, 2]
-    )
-    middle = np.where(np.arange(15) < 13, 0.0, scales.middle_time)
+def action_of(file: str) -> Act:
+    """Return the actions of a policy."""
+    policy = read_policy(file, of=GaitPlanningConfig)
 
     def act(seen: Any, generator: np.random.Generator) -> dict[str, np.ndarray]:
         del generator
-        command = policy(seen)
-        return {
-            "phase": (np.asarray(command["phase"]) - middle) / size,
-            "support": np.asarray(command["support"]),
-        }
+        return {name: np.asarray(part) for name, part in policy.action(seen).items()}
 
     return act
 
@@ -54,7 +46,7 @@ def main(arguments: list[str]) -> None:
     """Measure and print."""
     task = GaitPlanning(GaitPlanningConfig(), GaitWorldsConfig())
     config, generator = task.config, np.random.default_rng(0)
-    act = action_of(arguments[0], config) if arguments else random_action
+    act = action_of(arguments[0]) if arguments else random_action
     ground = task.make_world(range(FIELDS), False)
     pool = HostPool.of(task.draw_starts(ground, generator, 4 * ROBOTS))
     state, _ = pool.take(pool.draw_picks(generator, (ROBOTS,)))

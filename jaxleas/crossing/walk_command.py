@@ -50,6 +50,7 @@ from jaxleas.terrain import (
     has_polygons,
     import_terrain,
     load_scene,
+    with_cells,
 )
 from jaxleas.types import InputError
 
@@ -186,6 +187,4 @@ def _scene_of(terrain: Path, reading: Reading) -> Scene:
 
 
 def _map_of(terrain: Path, reading: Reading) -> HeightMap:
-    if reading.resolution is None and has_polygons(terrain):
-        reading = replace(reading, resolution=CELL)
-    return import_terrain(terrain, reading)
+    return import_terrain(terrain, with_cells(terrain, reading, CELL))

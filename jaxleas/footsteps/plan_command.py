@@ -1,6 +1,5 @@
 """The function behind `jaxleas gait footsteps`."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from jaxleas.footsteps.cost_map import FootCostMap, buffer_of
@@ -12,7 +11,7 @@ from jaxleas.footsteps.search_costs import Cost
 from jaxleas.footsteps.shipped_models import shipped_model_of
 from jaxleas.footsteps.state_file import named_in_state, read_state, write_plan
 from jaxleas.footsteps.walking_state import require_footing, require_goal, require_start
-from jaxleas.terrain import READING, Reading, has_polygons, import_terrain, require_picture
+from jaxleas.terrain import READING, Reading, import_terrain, require_picture, with_cells
 
 
 def plan(
@@ -54,9 +53,7 @@ def plan(
     )
     start = read_state(state, model.controller)
     target = parse_pose(goal, "--goal")
-    if reading.resolution is None and has_polygons(terrain):
-        reading = replace(reading, resolution=CELL)
-    height_map = import_terrain(terrain, reading)
+    height_map = import_terrain(terrain, with_cells(terrain, reading, CELL))
     costs = FootCostMap.of(height_map, buffer_of(model) if buffer is None else buffer)
     require_goal(target, costs)
     require_footing(target, costs)

@@ -4,6 +4,8 @@ from .crawl_search import search_crawls as search_crawls
 from .crawl_settings import CrawlSettings as CrawlSettings
 from .gait import Ending as Ending
 from .gait import Gait as Gait
+from .gait import taken as taken
+from .gait import transitions_along as transitions_along
 from .gait_plan import GaitPlan as GaitPlan
 from .gait_plan import plan_of as plan_of
 from .on_terrain import OnTerrain as OnTerrain

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import jax
 import numpy as np
 
 from jaxleas.dynamics import (
@@ -19,7 +18,8 @@ from jaxleas.dynamics import (
     one_of,
     solve_transitions,
 )
-from jaxleas.envs.gait_planning import FEET, GaitPlanningConfig, in_contact, transitions_of
+from jaxleas.envs.gait_planning import FEET, GaitPlanningConfig, in_contact
+from jaxleas.gaits.gait import transitions_along
 from jaxleas.gaits.gait_plan import GaitPlan
 from jaxleas.terrain import HeightMap
 from jaxleas.types import is_ground
@@ -99,9 +99,7 @@ def certify_gait(
         return GaitCertificate(0, 0, 0.0, 0.0, "no transition", unsafe, trunk)
     config = GaitPlanningConfig(robot=plan.robot, instants=plan.program.instants)
     where = Discretisation(instants=plan.program.instants)
-    before = jax.tree.map(lambda leaf: leaf[:-1], plan.phases)
-    after = jax.tree.map(lambda leaf: leaf[1:], plan.phases)
-    transitions = transitions_of(config, before, after, plan.times)
+    transitions = transitions_along(config, plan.phases, plan.times)
     solved = solve_transitions(transitions, where)
     margins, slacks, weakest = [], [], []
     for row in range(plan.length):

@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from jaxleas.dynamics import Discretisation, decide_transitions
 from jaxleas.envs.gait_planning import (
     GaitPlanningConfig,
     PlanningState,
+    base_distance,
     candidate_of,
+    decide_phases,
     footholds_are_safe,
     reach_slack,
-    transitions_of,
     trunk_is_free,
 )
 from jaxleas.gaits.crawl_settings import CrawlSettings
@@ -54,17 +54,16 @@ def search_crawls(
     ends: dict[int, tuple[int, int]] = {}
     for phases in range(1, chosen.most_phases + 1):
         layer = layers[-1]
-        open_ = np.flatnonzero(~layer.done)
+        open_ = np.flatnonzero(~np.isin(layer.owner, list(ends)))
         say(phases, len(set(layer.owner[open_].tolist())))
         if not len(open_):
             break
         after = _children(config, footing, chosen, layer, open_)
         after = after.kept(promising(after, seen, chosen.width))
         layers.append(after)
-        near = _is_there(config, after.states)
+        near = base_distance(after.states.phase, after.states.goal) < config.goal_radius
         for place in np.flatnonzero(near):
             ends.setdefault(int(after.owner[place]), (phases, int(place)))
-        after.done = np.isin(after.owner, list(ends))
     return [_way(layers, robot, ends.get(robot), chosen) for robot in range(count)]
 
 
@@ -87,20 +86,9 @@ def _children(
     fits &= reach_slack(config.robot, candidates) > LEAST_REACH
     feasible, times = np.zeros(len(row), bool), command.times.copy()
     for tried in TIMES:
-        asked = np.flatnonzero(fits & ~feasible)
-        if not len(asked):
-            break
-        transitions = transitions_of(
-            config,
-            taken(parents.phase, asked),
-            taken(candidates, asked),
-            np.tile(tried, (len(asked), 1)),
-        )
-        answer = decide_transitions(
-            transitions, settings.least_margin, Discretisation(instants=config.instants)
-        )
-        found = asked[answer.feasible(settings.least_margin)]
-        feasible[found], times[found] = True, tried
+        asked = fits & ~feasible
+        times[asked] = tried
+        feasible |= decide_phases(config, parents.phase, candidates, times, asked)[0]
     good = np.flatnonzero(feasible)
     step = parents.step + 1
     children = replace(taken(parents, good), phase=taken(candidates, good), step=step[good])
@@ -111,11 +99,6 @@ def _children(
         taken(command._replace(times=times), good),
         promise(config, children),
     )
-
-
-def _is_there(config: GaitPlanningConfig, state: PlanningState) -> np.ndarray:
-    apart = np.linalg.norm(state.phase.com[:, :2] - state.goal, axis=1)
-    return apart < config.goal_radius
 
 
 def _way(

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-from jaxleas.dynamics import LEAST_MARGIN
-
 
 @dataclass(frozen=True)
 class CrawlSettings:
@@ -13,7 +11,6 @@ class CrawlSettings:
         width: number of states kept after each phase.
         moves: number of moves tried from each state.
         most_phases: length of a plan at which the search ends [phases].
-        least_margin: margin of CROC that each transition must have [1].
         lead: distance of a wished foothold ahead of its nominal place [m].
         advance: way of the base for which footholds are wished [m].
         turn: largest turn of the base for which footholds are wished [rad].
@@ -25,7 +22,6 @@ class CrawlSettings:
     width: int = 4
     moves: int = 10
     most_phases: int = 150
-    least_margin: float = LEAST_MARGIN
     lead: float = 0.16
     advance: float = 0.05
     turn: float = 0.25

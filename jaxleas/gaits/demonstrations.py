@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -126,8 +125,4 @@ def _none(size: int) -> Demonstrations:
 
 def _joined(parts: list[Demonstrations]) -> Demonstrations:
     columns = zip(*(vars(part).values() for part in parts), strict=True)
-    return Demonstrations(*jax.tree.map(np.concatenate, list(columns), is_leaf=_is_column))
-
-
-def _is_column(value: Any) -> bool:
-    return isinstance(value, tuple)
+    return Demonstrations(*map(np.concatenate, columns))

@@ -7,7 +7,15 @@ from typing import Any, Literal, TypeVar
 import jax
 import numpy as np
 
-from jaxleas.envs.gait_planning import FEET, Command, PlanningState
+from jaxleas.dynamics import Transitions
+from jaxleas.envs.gait_planning import (
+    FEET,
+    Command,
+    GaitPlanningConfig,
+    Phases,
+    PlanningState,
+    transitions_of,
+)
 
 Rows = TypeVar("Rows")
 Ending = Literal["reached", "budget", "no move", "refused"]
@@ -33,6 +41,18 @@ class Gait:
 def gait_of(ending: Ending, states: Sequence[PlanningState], commands: Sequence[Command]) -> Gait:
     """Return the way through some states, one row each, by commands, one row each."""
     return Gait(ending, _joined(states), _joined([no_commands(), *commands]))
+
+
+def transitions_along(config: GaitPlanningConfig, phases: Phases, times: Any) -> Transitions:
+    """Return the transitions from each phase of a way to the next.
+
+    Args:
+        config: configuration of the task.
+        phases: phases [K + 1].
+        times: t_E* and t_S of each transition [K, 2] [s].
+    """
+    before, after = taken(phases, slice(None, -1)), taken(phases, slice(1, None))
+    return transitions_of(config, before, after, times)
 
 
 def no_commands() -> Command:

@@ -1,6 +1,6 @@
 """The states that a beam search keeps after a number of phases."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +12,7 @@ CELL_OF_FEET, CELL_OF_BASE = 0.03, 0.05
 """States whose feet and base lie in the same cells of these sizes count as one [m]."""
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Layer:
     """The states that are kept after a number of phases.
 
@@ -29,10 +29,6 @@ class Layer:
     parent: np.ndarray
     commands: Command
     worth: Float[np.ndarray, " N"]
-    done: np.ndarray = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.done = np.zeros(len(self.owner), bool)
 
     def kept(self, places: np.ndarray) -> "Layer":
         """Return the layer with some of its states alone."""

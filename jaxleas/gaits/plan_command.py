@@ -1,6 +1,5 @@
 """The function behind `jaxleas gait plan`."""
 
-from dataclasses import replace
 from math import atan2
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from jaxleas.gaits.on_terrain import OnTerrain
 from jaxleas.gaits.plan_file import write_gait_plan
 from jaxleas.gaits.policy_way import walk_policy
 from jaxleas.runs import Progress
-from jaxleas.terrain import READING, HeightMap, Reading, has_polygons, import_terrain
+from jaxleas.terrain import READING, Reading, import_terrain, with_cells
 from jaxleas.training import read_policy
 from jaxleas.types import InputError, JaxleasError
 
@@ -64,7 +63,7 @@ def plan(
     begin, end = parse_pose(start, "--start"), parse_pose(goal, "--goal")
     policy = None if planner == SEARCH else read_policy(planner, of=GaitPlanningConfig)
     config = GaitPlanningConfig() if policy is None else policy.config
-    height_map = _map_of(terrain, reading)
+    height_map = import_terrain(terrain, with_cells(terrain, reading, CELL))
     place = OnTerrain(config, height_map)
     state = place.stand((begin.x, begin.y, _heading(begin, end, start)), (end.x, end.y))
     cause = ""
@@ -87,12 +86,6 @@ def plan(
     if not certificate.holds:
         raise NoGaitError(f"the plan does not hold: {certificate.in_words()}; it is in {out}")
     return found
-
-
-def _map_of(terrain: Path, reading: Reading) -> HeightMap:
-    if reading.resolution is None and has_polygons(terrain):
-        reading = replace(reading, resolution=CELL)
-    return import_terrain(terrain, reading)
 
 
 def _heading(begin: Goal, end: Goal, start: str) -> float:

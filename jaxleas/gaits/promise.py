@@ -6,9 +6,11 @@ from jaxtyping import Float
 from jaxleas.envs.gait_planning import (
     GaitPlanningConfig,
     PlanningState,
+    base_distance,
     bearing,
+    feet_distance,
+    foot_offsets,
     in_contact,
-    rotate,
 )
 
 FACING, MOST_OFF = 0.25, 2.5
@@ -23,10 +25,8 @@ ALL_FOUR = 0.02
 def promise(config: GaitPlanningConfig, state: PlanningState) -> Float[np.ndarray, " N"]:
     """Return how promising states are: minus the way that is left, and what will cost moves [m]."""
     phase = state.phase
-    com, feet = phase.com[:, :2], phase.feet[..., :2]
-    left = 0.5 * np.linalg.norm(feet.mean(axis=1) - state.goal, axis=1)
-    left = left + 0.5 * np.linalg.norm(com - state.goal, axis=1)
-    offset = rotate(-phase.yaw, feet - com[:, None]) - config.robot.nominal[:, :2]
+    left = 0.5 * feet_distance(phase, state.goal) + 0.5 * base_distance(phase, state.goal)
+    offset = foot_offsets(config.robot, phase)
     along, across = config.robot.reach_high[0], config.robot.reach_high[1]
     stretch = np.abs(offset * [1.0, min(SIDEWAYS, along / across)]).max(axis=-1)
     stretch = np.where(in_contact(phase.support), stretch, 0.0).max(axis=1)

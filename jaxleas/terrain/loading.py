@@ -1,6 +1,7 @@
 """Any terrain as polygons: scenes and meshes as they are, maps by the surfaces found in them."""
 
 import logging
+from dataclasses import replace
 from pathlib import Path
 
 from jaxleas.terrain.importers import import_terrain, is_bag
@@ -56,6 +57,19 @@ def scene_of_surfaces(found: FoundSurfaces) -> Scene:
 def has_polygons(path: str | Path) -> bool:
     """Return whether a terrain file holds polygons rather than heights, by its suffix."""
     return Path(path).suffix.lower() in (".json", *SUFFIXES)
+
+
+def with_cells(path: str | Path, reading: Reading, cell: float) -> Reading:
+    """Return a reading that draws polygons in cells of a size where it states none.
+
+    Args:
+        path: path of the terrain file.
+        reading: what the file does not state itself.
+        cell: edge of a cell [m].
+    """
+    if reading.resolution is None and has_polygons(path):
+        return replace(reading, resolution=cell)
+    return reading
 
 
 def is_map(path: str | Path) -> bool:

@@ -26,6 +26,7 @@ from jaxleas.terrain import (
     has_polygons,
     import_terrain,
     load_scene,
+    with_cells,
 )
 from jaxleas.types import InputError
 from jaxleas.viewer.legged_drive import LeggedDrive
@@ -58,11 +59,9 @@ class Quadruped:
         walker = find_controller(controller, self.body, (controller,))
         polygons = has_polygons(terrain)
         self.scene = load_scene(terrain, replace(reading, resolution=None) if polygons else reading)
-        if polygons and reading.resolution is None:
-            reading = replace(reading, resolution=CELL)
         model = model_of(options.models, walker)
         settings = WalkSettings()
-        self._map = import_terrain(terrain, reading)
+        self._map = import_terrain(terrain, with_cells(terrain, reading, CELL))
         costs = costs_of(model, self._map, [], settings)
         self.walk = Walk(make_physics(self.body, 1, self.scene), walker)
         self.start = self._started(options.start, costs)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from jaxleas.contacts import plan_astar
 from jaxleas.contacts.certificate import certify
 from jaxleas.contacts.programs.mip import plan_mip
 from jaxleas.contacts.programs.sl1m import plan_sl1m
@@ -31,15 +32,16 @@ def check(shared, model: str, entries: list[dict], planner) -> dict[str, bool]:
     return solved
 
 
+@pytest.mark.parametrize("planner", [plan_mip, plan_astar])
 @pytest.mark.parametrize("model", MODELS)
-def test_mip_on_some(shared, model: str) -> None:
+def test_exact_planners_on_some(shared, model: str, planner) -> None:
     """Every infeasible problem, and every tenth feasible one."""
     entries = reference_entries(shared)
     infeasible = [e for e in entries if e["verdict"][model]["status"] == "infeasible"]
     feasible = [e for e in entries if e not in infeasible][::10]
-    solved = check(shared, model, infeasible, plan_mip)
+    solved = check(shared, model, infeasible, planner)
     assert not any(solved.values())
-    assert all(check(shared, model, feasible, plan_mip).values())
+    assert all(check(shared, model, feasible, planner).values())
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -49,10 +51,11 @@ def test_sl1m_on_some(shared, model: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("planner", [plan_mip, plan_astar])
 @pytest.mark.parametrize("model", MODELS)
-def test_mip_on_all(shared, model: str) -> None:
+def test_exact_planners_on_all(shared, model: str, planner) -> None:
     entries = reference_entries(shared)
-    solved = check(shared, model, entries, plan_mip)
+    solved = check(shared, model, entries, planner)
     right = [
         solved[entry["id"]] == (entry["verdict"][model]["status"] == "feasible")
         for entry in entries

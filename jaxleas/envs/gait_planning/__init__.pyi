@@ -5,6 +5,7 @@ from .candidates import command_of as command_of
 from .config import GaitPlanningConfig as GaitPlanningConfig
 from .config import GaitWorldsConfig as GaitWorldsConfig
 from .config import Shares as Shares
+from .deciding import decide_phases as decide_phases
 from .footholds import footholds_are_safe as footholds_are_safe
 from .footholds import trunk_is_free as trunk_is_free
 from .ground import Ground as Ground
@@ -12,13 +13,16 @@ from .ground import edge_distance as edge_distance
 from .ground import ground_of as ground_of
 from .phases import Phases as Phases
 from .phases import PlanningState as PlanningState
+from .phases import base_distance as base_distance
 from .phases import bearing as bearing
+from .phases import feet_distance as feet_distance
 from .phases import lowest_foothold as lowest_foothold
 from .phases import rotate as rotate
 from .quadruped import FEET as FEET
 from .quadruped import QuadrupedConfig as QuadrupedConfig
 from .reach import foot_slacks as foot_slacks
 from .reach import reach_slack as reach_slack
+from .reward import foot_offsets as foot_offsets
 from .supports import STANDING as STANDING
 from .supports import in_contact as in_contact
 from .task import GaitPlanning as GaitPlanning

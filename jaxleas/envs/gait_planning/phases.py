@@ -2,7 +2,7 @@
 
 import numpy as np
 from flax import struct
-from jaxtyping import Float32, Int32
+from jaxtyping import Float, Float32, Int32
 
 from jaxleas.envs.gait_planning.supports import in_contact
 
@@ -62,3 +62,17 @@ def bearing(phase: Phases, goal: np.ndarray) -> np.ndarray:
     """Return the angle of the goal from the heading, counted to the left [N] [rad]."""
     ahead = rotate(-phase.yaw, goal - phase.com[:, :2])
     return np.arctan2(ahead[:, 1], ahead[:, 0])
+
+
+def base_distance(phase: Phases, goal: np.ndarray) -> Float[np.ndarray, " N"]:
+    """Return the distance of the base from the goal [m]."""
+    return np.linalg.norm(phase.com[:, :2] - goal, axis=1)
+
+
+def feet_distance(phase: Phases, goal: np.ndarray) -> Float[np.ndarray, " N"]:
+    """Return the distance of the mean of all four feet from the goal [m].
+
+    Swinging feet count where they are planned: the mean over feet in contact jumps by centimetres
+    where one is lifted.
+    """
+    return np.linalg.norm(phase.feet[..., :2].mean(axis=1) - goal, axis=1)

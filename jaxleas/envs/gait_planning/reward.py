@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
-from jaxleas.envs.gait_planning.phases import Phases, bearing, rotate
+from jaxleas.envs.gait_planning.phases import Phases, bearing, feet_distance, rotate
 from jaxleas.envs.gait_planning.quadruped import QuadrupedConfig
 
 
@@ -28,22 +28,13 @@ def reward_of(
     goal, grounded = episode
     product = (
         weights["reward.progress"]
-        * (_distance(phase, goal) - _distance(candidate, goal))
+        * (feet_distance(phase, goal) - feet_distance(candidate, goal))
         * _facing(candidate, goal) ** 2
         * _ease(robot, weights["reward.effort"], candidate)
     )
     stance = weights["reward.stance"] * grounded.sum(axis=1)
     changes = candidate.support != phase.support
     return product - stance + weights["reward.alive"] + weights["reward.change"] * changes
-
-
-def _distance(phase: Phases, goal: np.ndarray) -> Float[np.ndarray, " N"]:
-    """Return the distance of the mean of all four feet from the goal [m].
-
-    Swinging feet count where they are planned: the mean over feet in contact jumps by centimetres
-    where one is lifted.
-    """
-    return np.linalg.norm(phase.feet[..., :2].mean(axis=1) - goal, axis=1)
 
 
 def _facing(phase: Phases, goal: np.ndarray) -> Float[np.ndarray, " N"]:

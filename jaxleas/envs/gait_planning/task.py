@@ -7,25 +7,19 @@ from typing import Any, ClassVar
 import jax
 import numpy as np
 
-from jaxleas.dynamics import (
-    REACH_UNIT,
-    Discretisation,
-    Ended,
-    decide_transitions,
-    has_compiler,
-)
+from jaxleas.dynamics import REACH_UNIT
 from jaxleas.envs import Examination, Starts, StepResult, Task, TaskConfig, WorldsConfig
 from jaxleas.envs.gait_planning.candidates import candidate_of, command_of
 from jaxleas.envs.gait_planning.config import GaitPlanningConfig, GaitWorldsConfig
+from jaxleas.envs.gait_planning.deciding import decide_phases
 from jaxleas.envs.gait_planning.footholds import footholds_are_safe, trunk_is_free
 from jaxleas.envs.gait_planning.ground import Ground, make_ground
 from jaxleas.envs.gait_planning.observation import observation_of
-from jaxleas.envs.gait_planning.phases import Phases, PlanningState
+from jaxleas.envs.gait_planning.phases import Phases, PlanningState, base_distance
 from jaxleas.envs.gait_planning.reach import reach_slack
 from jaxleas.envs.gait_planning.reward import reward_of
 from jaxleas.envs.gait_planning.starts import draw_starts
 from jaxleas.envs.gait_planning.supports import in_contact
-from jaxleas.envs.gait_planning.transitions import transitions_of
 from jaxleas.terrain import FIELD_KINDS
 
 
@@ -80,8 +74,7 @@ class GaitPlanning(Task):
         episode = (state.goal, grounded)
         reward = reward_of(config.robot, weights, state.phase, candidate, episode)
         step = state.step + 1
-        apart = np.linalg.norm(candidate.com[:, :2] - state.goal, axis=1)
-        reached = accepted & (apart < config.goal_radius)
+        reached = accepted & (base_distance(candidate, state.goal) < config.goal_radius)
         answer: dict[str, Any] = {
             "reward": np.where(accepted, reward, -weights["reward.failure"]).astype(np.float32),
             "terminated": ~accepted,
@@ -111,18 +104,7 @@ class GaitPlanning(Task):
             times: t_E* and t_S [s].
             asked: which transitions are asked; others are not accepted.
         """
-        feasible = np.zeros(len(asked), bool)
-        unknown = np.zeros(len(asked), bool)
-        # JAX compiles a program for each number of transitions: without numba it gets all of them.
-        chosen = np.flatnonzero(asked if has_compiler() else np.ones_like(asked))
-        if len(chosen):
-            before, after = jax.tree.map(lambda leaf: leaf[chosen], (phase, candidate))
-            transitions = transitions_of(self.config, before, after, times[chosen])
-            where = Discretisation(instants=self.config.instants)
-            answers = decide_transitions(transitions, self.config.least_margin, where)
-            feasible[chosen] = asked[chosen] & answers.feasible(self.config.least_margin)
-            unknown[chosen] = answers.ended == Ended.NOT_CONVERGED
-        return feasible, unknown
+        return decide_phases(self.config, phase, candidate, times, asked)
 
     def look(self, world: Ground, state: PlanningState) -> dict[str, np.ndarray]:
         """Return what a policy sees."""

@@ -16,14 +16,12 @@ from jaxleas.types import InputError
 from tests.contacts.effectors import FLOOR
 from tests.contacts.search.worlds import slow_twin, tilted_world
 from tests.contacts.test_planners import MODELS
-from tests.contacts.test_reference import check
 from tests.contacts.worlds import (
     content,
     moved,
     problem,
     random_world,
     rectangle,
-    reference_entries,
     stones,
 )
 
@@ -56,29 +54,6 @@ def _against_the_twin(model: str, twice: bool, seeds: range, steps: int = 4) -> 
             assert certify(asked, plan).certified
         verdicts.append(room > 0.0)
     return verdicts
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_it_is_right_on_some_verdicts_from_outside(shared, model: str) -> None:
-    entries = reference_entries(shared)
-    infeasible = [e for e in entries if e["verdict"][model]["status"] == "infeasible"]
-    feasible = [e for e in entries if e not in infeasible][::10]
-    assert not any(check(shared, model, infeasible, plan_astar).values())
-    assert all(check(shared, model, feasible, plan_astar).values())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("model", MODELS)
-def test_it_is_right_on_all_verdicts_from_outside(shared, model: str) -> None:
-    entries = reference_entries(shared)
-    solved = check(shared, model, entries, plan_astar)
-    right = [
-        solved[entry["id"]] == (entry["verdict"][model]["status"] == "feasible")
-        for entry in entries
-        if entry["id"] in solved
-    ]
-    assert len(right) == 145
-    assert all(right)
 
 
 @pytest.mark.parametrize("model", MODELS)
