@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from jaxleas.footsteps import Goal, WalkingState
+from jaxleas.footsteps import Goal, WalkingState, wrapped
 
 RESTS = 0.05
 """Speed of the centre of mass below which a robot counts as standing [m/s]."""
-MOST = 0.10
-"""Largest distance that is allowed for, along each axis [m]."""
+MOST = np.array([0.10, 0.10, 0.2])
+"""Most that is allowed for, along each axis [m] and of the heading [rad]."""
 
 
 class Stop:
@@ -24,7 +24,7 @@ class Stop:
 
     def __init__(self) -> None:
         self.is_taken = False
-        self._beside = np.zeros(2)
+        self._beside = np.zeros(3)
         self._asked: Goal | None = None
         self._aim: Goal | None = None
 
@@ -40,13 +40,14 @@ class Stop:
             goal: pose to come to rest at.
         """
         if self._asked is not goal or self._aim is None:
-            self.is_taken, self._beside = False, np.zeros(2)
+            self.is_taken, self._beside = False, np.zeros(3)
             self._asked = self._aim = goal
         rests = not state.command.any() and np.hypot(*state.com_velocity[:2]) < RESTS
         if self.is_taken and rests and not goal.is_met_by(state):
             self.is_taken = False
-            missed = state.com[:2] - (goal.x, goal.y)
+            turned_away = wrapped(np.asarray(state.yaw - goal.yaw))
+            missed = np.append(state.com[:2] - (goal.x, goal.y), turned_away)
             self._beside = np.clip(self._beside + missed, -MOST, MOST)
-            x, y = np.array([goal.x, goal.y]) - self._beside
-            self._aim = replace(goal, x=float(x), y=float(y))
+            x, y, yaw = np.array([goal.x, goal.y, goal.yaw]) - self._beside
+            self._aim = replace(goal, x=float(x), y=float(y), yaw=float(yaw))
         return self._aim
