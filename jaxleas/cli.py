@@ -89,6 +89,11 @@ COMMANDS = {
         "plan",
         "plan a quadruped's support phases to a goal",
     ),
+    "gait track": (
+        "jaxleas.crossing.track_command",
+        "track",
+        "follow a gait plan in physics",
+    ),
     "gait distill": (
         "jaxleas.crossing.distill_command",
         "distill",

@@ -147,6 +147,7 @@ LOAD_NO_CODE = {
         "gait fit",
         "gait footsteps",
         "gait plan",
+        "gait track",
         "gait imitate",
         "gait course",
         "transition check",

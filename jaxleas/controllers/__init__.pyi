@@ -8,7 +8,16 @@ from .falls import FALLS as FALLS
 from .falls import UPRIGHT as UPRIGHT
 from .falls import Fall as Fall
 from .falls import falls as falls
+from .foot_placing import standing_with as standing_with
+from .phase_tracker import PhaseTracker as PhaseTracker
+from .phase_tracks import PhaseTracks as PhaseTracks
+from .phase_tracks import Reference as Reference
+from .phase_tracks import Swings as Swings
+from .phase_tracks import joined as joined
+from .swing_planning import Heights as Heights
+from .swing_planning import plan_swings as plan_swings
 from .switching import Switching as Switching
+from .tracker_settings import TrackerSettings as TrackerSettings
 from .trot import Trot as Trot
 from .trot_settings import TrotGains as TrotGains
 from .trot_settings import TrotSettings as TrotSettings

@@ -26,6 +26,23 @@ def ground_forces(
         friction: friction coefficient of the ground.
     """
     count, feet = stands.shape
+    flat = grasp_of(arms, stands)
+    square = flat @ np.swapaxes(flat, 1, 2) + _SMALL * np.eye(6)
+    dual = np.linalg.solve(square, wrench[..., None])
+    forces = (np.swapaxes(flat, 1, 2) @ dual).reshape(count, feet, 3)
+    return within_cone(forces, friction)
+
+
+def grasp_of(
+    arms: Float[np.ndarray, "N E 3"], stands: Bool[np.ndarray, "N E"]
+) -> Float[np.ndarray, "N 6 F"]:
+    """Return the matrices from the forces on standing feet to their force and moment.
+
+    Args:
+        arms: positions of the feet relative to the point of the moment [m].
+        stands: whether a foot stands.
+    """
+    count, feet = stands.shape
     grasp = np.zeros((count, 6, feet, 3))
     carried = stands.astype(float)
     for axis in range(3):
@@ -34,11 +51,7 @@ def ground_forces(
     grasp[:, 3, :, 1], grasp[:, 3, :, 2] = -z, y
     grasp[:, 4, :, 0], grasp[:, 4, :, 2] = z, -x
     grasp[:, 5, :, 0], grasp[:, 5, :, 1] = -y, x
-    flat = grasp.reshape(count, 6, 3 * feet)
-    square = flat @ np.swapaxes(flat, 1, 2) + _SMALL * np.eye(6)
-    dual = np.linalg.solve(square, wrench[..., None])
-    forces = (np.swapaxes(flat, 1, 2) @ dual).reshape(count, feet, 3)
-    return within_cone(forces, friction)
+    return grasp.reshape(count, 6, 3 * feet)
 
 
 def within_cone(

@@ -7,6 +7,10 @@ from .courses import COURSES as COURSES
 from .courses import make_course as make_course
 from .crossing import cross as cross
 from .first_pair import first_pair as first_pair
+from .foothold_scores import FootholdLog as FootholdLog
+from .foothold_scores import foothold_tracking_error as foothold_tracking_error
+from .foothold_scores import landing_errors as landing_errors
+from .foothold_scores import tracked_footholds as tracked_footholds
 from .ground_start import measured_at_start as measured_at_start
 from .ground_start import standing_on as standing_on
 from .in_turn import InTurn as InTurn
@@ -14,10 +18,16 @@ from .in_words import NotReachedError as NotReachedError
 from .in_words import in_words as in_words
 from .outcomes import Crossing as Crossing
 from .outcomes import Outcome as Outcome
+from .plan_start import start_of as start_of
 from .seen_map import MapErrors as MapErrors
 from .tally import Tally as Tally
 from .tally import tally as tally
 from .tally import together as together
+from .tracking import FOLLOWED as FOLLOWED
+from .tracking import Followed as Followed
+from .tracking import Tracking as Tracking
+from .tracking import track as track
+from .tracking_in_words import NotFollowedError as NotFollowedError
 from .walk_log import WalkDescription as WalkDescription
 from .walk_log import WalkLog as WalkLog
 from .walk_log import WalkLogger as WalkLogger

@@ -6,11 +6,12 @@ from jaxleas.crossing.outcomes import Crossing
 from jaxleas.footsteps import Goal
 from jaxleas.types import JaxleasError
 
-_CAUSES = {
+CAUSES = {
     "tilted": "its trunk tilted",
     "low": "its trunk sank between its feet",
     "diverged": "the simulation failed: its numbers are no longer finite",
 }
+"""What a fall is seen by, in words."""
 
 
 class NotReachedError(JaxleasError):
@@ -39,7 +40,7 @@ def in_words(crossing: Crossing, goal: Goal) -> str:
     if crossing.outcome == "reached":
         return f"reached: it stands {where}"
     if crossing.outcome == "fell":
-        return f"fell {where}: {_CAUSES.get(crossing.cause, crossing.cause)}"
+        return f"fell {where}: {CAUSES.get(crossing.cause, crossing.cause)}"
     if crossing.outcome == "no path" and crossing.last_plan is not None:
         return f"no path: it stands {where}; {crossing.last_plan.in_words()}"
     ends = {"time": "its time was over", "interrupted": "it was stopped"}

@@ -1,7 +1,7 @@
 """The function behind `jaxleas gait walk`."""
 
 import sys
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from jaxleas.crossing.in_turn import InTurn
 from jaxleas.crossing.in_words import NotReachedError, in_words
 from jaxleas.crossing.seen_map import MapErrors
 from jaxleas.crossing.tally import tally
+from jaxleas.crossing.terrain_files import scene_of
 from jaxleas.crossing.walk_log import (
     WalkDescription,
     WalkLogger,
@@ -45,11 +46,8 @@ from jaxleas.terrain import (
     READING,
     HeightMap,
     Reading,
-    Scene,
     SceneEdges,
-    has_polygons,
     import_terrain,
-    load_scene,
     with_cells,
 )
 from jaxleas.types import InputError
@@ -113,7 +111,7 @@ def walk(
     together = walker
     if higher is not None:
         together = Switching([walker, find_controller(higher, body, (higher, *allow))])
-    scene = _scene_of(terrain, reading)
+    scene = scene_of(terrain, reading)
     goals = [] if waypoints is None else read_waypoints(waypoints)
     goals.append(parse_pose(goal, "--goal", STOPS))
     place = parse_pose(start, "--start")
@@ -177,13 +175,6 @@ class _Shown:
 
 _SHOWN = 25
 """Ticks between two updates of the progress."""
-
-
-def _scene_of(terrain: Path, reading: Reading) -> Scene:
-    """Return the terrain as polygons; cells are those of the robot's map alone."""
-    if has_polygons(terrain):
-        reading = replace(reading, resolution=None)
-    return load_scene(terrain, reading)
 
 
 def _map_of(terrain: Path, reading: Reading) -> HeightMap:

@@ -122,8 +122,8 @@ def footstep_arrays(footsteps: tuple[WalkedFootstep, ...]) -> dict[str, np.ndarr
         "footstep_command": np.array([each.command for each in footsteps]).reshape(-1, 3),
         "footstep_com": np.array([each.com for each in footsteps]).reshape(-1, 3),
         "footstep_yaw": np.array([each.yaw for each in footsteps]),
-        "footstep_feet": np.array([each.feet for each in footsteps]).reshape(-1, *feet),
-        "footstep_planned": np.array(planned).reshape(-1, *feet),
+        "footstep_feet": np.array([each.feet for each in footsteps]).reshape(len(footsteps), *feet),
+        "footstep_planned": np.array(planned).reshape(len(footsteps), *feet),
         "footstep_controller": np.array([each.controller for each in footsteps], dtype=np.str_),
     }
 

@@ -2,6 +2,7 @@ from .certifying import GaitCertificate as GaitCertificate
 from .certifying import certify_gait as certify_gait
 from .crawl_search import search_crawls as search_crawls
 from .crawl_settings import CrawlSettings as CrawlSettings
+from .easing import eased as eased
 from .gait import Ending as Ending
 from .gait import Gait as Gait
 from .gait import taken as taken
@@ -12,5 +13,7 @@ from .on_terrain import OnTerrain as OnTerrain
 from .plan_file import read_gait_plan as read_gait_plan
 from .plan_file import write_gait_plan as write_gait_plan
 from .policy_way import walk_policy as walk_policy
+from .tracks import quickened as quickened
+from .tracks import track_of as track_of
 from .wished_footholds import Footing as Footing
 from .wished_footholds import footing_of as footing_of

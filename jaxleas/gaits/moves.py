@@ -19,8 +19,8 @@ from jaxleas.envs.gait_planning import (
     rotate,
 )
 from jaxleas.gaits.crawl_settings import CrawlSettings
-from jaxleas.gaits.static_margin import distance_inside
 from jaxleas.gaits.wished_footholds import Wishes, walking_share
+from jaxleas.geometry import distance_inside
 
 STEPS = np.stack(
     np.meshgrid(np.arange(-2, 6) * 0.04, np.arange(-4, 5) * 0.03, indexing="ij"), axis=-1

@@ -18,8 +18,8 @@ from jaxleas.envs.gait_planning import (
     trunk_is_free,
 )
 from jaxleas.gaits.gait import Gait
-from jaxleas.gaits.static_margin import distance_inside
 from jaxleas.gaits.wished_footholds import Footing, footing_of
+from jaxleas.geometry import distance_inside
 from jaxleas.terrain import HeightMap
 from jaxleas.types import InputError, is_ground
 

@@ -10,3 +10,4 @@ from .rotations import rotate_to_world as rotate_to_world
 from .rotations import squared_length as squared_length
 from .rotations import wrap_angle as wrap_angle
 from .rotations import wrap_angle_on_host as wrap_angle_on_host
+from .static_margin import distance_inside as distance_inside

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from jaxleas.envs.gait_planning import STANDING
-from jaxleas.gaits.static_margin import distance_inside
+from jaxleas.geometry import distance_inside
 
 NOMINAL = np.array([[0.34, 0.2], [0.34, -0.2], [-0.34, 0.2], [-0.34, -0.2]])
 
