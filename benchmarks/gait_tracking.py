@@ -52,18 +52,17 @@ Planned = tuple[dict[int, HeightMap], list[tuple[int, GaitPlan]]]
 def main(arguments: Sequence[str]) -> None:
     """Track the plans and write the rows."""
     given = _parser().parse_args(arguments)
-    machine, measured = this_machine(), []
+    machine = this_machine()
     for kind in given.kinds:
-        planned = _plans(given, kind)
-        begin = time.perf_counter()
+        planned, begin = _plans(given, kind), time.perf_counter()
         made = _tracked(given, *planned)
-        for row in _rows(kind, made, planned[1]):
-            measured.append(row.measurement(machine))
-            print(f"{row.name}: {measured[-1].value} {row.unit}", flush=True)
         seconds = time.perf_counter() - begin
         print(f"{kind}: {len(made)} episodes in {seconds:.0f} s", file=sys.stderr, flush=True)
-    if not given.held_out:
-        write_measurements(OUT, [*others(OUT, measured), *measured])
+        measured = [row.measurement(machine) for row in _rows(kind, made, planned[1])]
+        for each in measured:
+            print(f"{each.name}: {each.value} {each.unit}", flush=True)
+        if not given.held_out:  # kind by kind, so that what is done is kept
+            write_measurements(OUT, [*others(OUT, measured), *measured])
 
 
 def _rows(
