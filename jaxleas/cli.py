@@ -32,6 +32,7 @@ COMMANDS = {
     ),
     "terrain generate": ("jaxleas.terrain.commands", "generate", "write a random arena"),
     "terrain scenario": ("jaxleas.terrain.commands", "scenario", "write a named scenario"),
+    "robot make": ("jaxleas.modelling.commands", "make", "make a robot's file from its URDF"),
     "evaluate": ("jaxleas.reports.commands", "evaluate", "judge a policy on terrain it never saw"),
     "rollout": ("jaxleas.guide.commands", "rollout", "walk a policy on any terrain"),
     "navigate": (

@@ -18,7 +18,17 @@ import jaxleas
 ROOT = Path(jaxleas.__file__).parent
 ORDER = (
     *("types", "xla", "files", "configuration", "workers", "runs", "geometry", "robots", "terrain"),
-    *("dynamics", "conditions", "contacts", "physics", "controllers", "envs", "training", "guide"),
+    *(
+        "modelling",
+        "dynamics",
+        "conditions",
+        "contacts",
+        "physics",
+        "controllers",
+        "envs",
+        "training",
+        "guide",
+    ),
     *(
         "labels",
         "surrogates",

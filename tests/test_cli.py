@@ -151,6 +151,7 @@ LOAD_NO_CODE = {
         "gait imitate",
         "gait course",
         "transition check",
+        "robot make",
     ),  # plain
 }
 

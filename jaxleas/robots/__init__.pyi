@@ -18,6 +18,7 @@ from .limb_model import Body as Body
 from .limb_model import Capsule as Capsule
 from .limb_model import LimbModel as LimbModel
 from .limb_model import LinkBox as LinkBox
+from .numeric_inverse import newton_inverse as newton_inverse
 from .numeric_inverse import numeric_inverse as numeric_inverse
 from .recorded import PlannedRobot as PlannedRobot
 from .recorded import RecordedRobot as RecordedRobot
@@ -25,4 +26,11 @@ from .recorded import robot_for as robot_for
 from .robot import Limb as Limb
 from .robot import Robot as Robot
 from .talos import load_talos as load_talos
+from .urdf import chain_between as chain_between
 from .urdf import read_chain as read_chain
+from .urdf_file import UrdfJoint as UrdfJoint
+from .urdf_file import joint_motion as joint_motion
+from .urdf_file import rotation_of_rpy as rotation_of_rpy
+from .urdf_file import three_numbers as three_numbers
+from .urdf_file import urdf_element as urdf_element
+from .urdf_file import urdf_joints as urdf_joints

@@ -116,7 +116,7 @@ def legs_of(robot: Robot) -> Legs:
     if robot.body is None or len(models) < len(described):
         raise InputError(
             f"the file of robot '{robot.name}' has no 'body', or a leg of it no 'model': a planner"
-            " that moves joints needs both; scripts/make_robot.py makes them from a URDF"
+            " that moves joints needs both; `jaxleas robot make` makes them from a URDF"
         )
     effectors = [robot.effectors[index] for index in robot.feet]
     require_that_feet_can_stand(robot.name, effectors, models)

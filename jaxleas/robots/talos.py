@@ -5,5 +5,5 @@ from jaxleas.robots.robot import Robot
 
 
 def load_talos() -> Robot:
-    """Return Talos from the file that scripts/make_robot.py made from the published URDF."""
+    """Return Talos from the file made of the published URDF and the options beside it."""
     return load_robot("talos")

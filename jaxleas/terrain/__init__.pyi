@@ -30,6 +30,7 @@ from .loading import is_map as is_map
 from .loading import load_scene as load_scene
 from .loading import require_search_of_map as require_search_of_map
 from .loading import with_cells as with_cells
+from .meshes.formats import MESHES as MESHES
 from .meshes.to_scene import mesh_to_scene as mesh_to_scene
 from .own_files import Entry as Entry
 from .own_files import pinned as pinned

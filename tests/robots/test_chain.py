@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 from urdfs import G1, PANDA, TALOS, published
 
+from jaxleas.robots import read_chain, rotation_of_rpy
 from jaxleas.robots.chain import SerialChain, chain_jacobian, chain_posture
-from jaxleas.robots.urdf import read_chain, rotation_of_rpy
 from jaxleas.types import InputError, Pose
 
 LIMBS = [

@@ -18,4 +18,5 @@ def published(name: str) -> Path:
 
 TALOS = "talos_data/robots/talos_reduced.urdf"
 G1 = "g1_description/urdf/g1_29dof_rev_1_0.urdf"
+ANYMAL_B = "anymal_b_simple_description/robots/anymal.urdf"
 PANDA = "panda_description/urdf/panda.urdf"
