@@ -1,5 +1,6 @@
 """Programs of a plan as a tracker asks them: balance counts, and legs reach a little farther."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -41,8 +42,16 @@ def tracked_margins(
     """
     config = GaitPlanningConfig(robot=_roomier(plan.robot), instants=plan.program.instants)
     where = Discretisation(instants=plan.program.instants)
-    found = solve_transitions(transitions_of(config, before, after, times), where)
-    return TrackedMargins(found.margin, found.free_point)
+    origin = before.com.astype(np.float64)
+    here = (_from(each, origin) for each in (before, after))
+    found = solve_transitions(transitions_of(config, *here, times), where)
+    return TrackedMargins(found.margin, found.free_point + origin)
+
+
+def _from(phases: Phases, origin: Float[np.ndarray, "N 3"]) -> Phases:
+    """Return phases with places from an origin: moments about a far one drown what is near."""
+    feet = phases.feet - origin[:, None]
+    return replace(phases, com=phases.com - origin, feet=feet)
 
 
 def _roomier(robot: QuadrupedConfig) -> QuadrupedConfig:

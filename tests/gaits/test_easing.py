@@ -24,3 +24,11 @@ def test_the_smallest_margin_grows_and_all_but_rests_between_the_ends_stays():
     np.testing.assert_array_equal(found.phases.com[:, 2], plan.phases.com[:, 2])
     np.testing.assert_array_equal(found.phases.feet, plan.phases.feet)
     np.testing.assert_array_equal(found.times, plan.times)
+
+
+def test_margins_are_the_same_far_from_the_origin():
+    plan = one_step()
+    near = margins(plan)
+    for each in (plan.phases.com, plan.phases.feet):
+        each[..., :2] += np.float32([512.0, -1024.0])
+    np.testing.assert_allclose(margins(plan), near, atol=1e-3)
