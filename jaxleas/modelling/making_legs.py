@@ -58,7 +58,10 @@ def make_stance(
     order = order_of(places)
     if order != list(range(len(feet))):
         named = [options.feet[index] for index in order]
-        say(f"feet are taken in the order {' '.join(named)}: left before right, front before hind")
+        say(
+            f"feet are taken in the order {' '.join(named)}: left before right, front before hind,"
+            " as the root has x ahead and y left (--root names a link that has)"
+        )
     feet = [feet[index] for index in order]
     names = limb_names(places[order], tuple(each.link for each in feet))
     height = _height(feet, options, say)

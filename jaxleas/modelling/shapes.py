@@ -134,23 +134,29 @@ def leg_shapes(
         if found is None or index not in (leg.knee - 1, leg.knee, last):
             continue
         low, high = found
+        tip = leg.chain.tip
         if index == last and leg.flat:  # below its sole there is the ground
-            low[2] = max(low[2], leg.chain.tip.position[2])
+            _cut(low, high, -tip.rotation[:, 2], tip.position)
         elif index == last:  # a leaning shank would meet the ground beside its point foot
-            tip = float(leg.chain.tip.position[2])
-            low[2] = max(low[2], tip + min(_ABOVE_SOLE, 0.3 * abs(tip)))
-        elif index == leg.knee:
-            low[2] = max(low[2], _end_of_shank(leg))
+            spare = min(_ABOVE_SOLE, 0.3 * float(np.linalg.norm(tip.position)))
+            _cut(low, high, tip.position, tip.position, spare)
+        elif index == leg.knee and abs(tip.rotation[:, 2] @ tip.position) < _ABOVE_SOLE:
+            ankle = leg.chain.positions[leg.knee + 1]
+            _cut(low, high, ankle, ankle, _ABOVE_ANKLE)
         if (high - low > 0.0).all():
             boxes.append(LinkBox(index, _box(low, high)))
     return tuple(boxes), tuple(_capsules(leg, {each.link: each.box for each in boxes}))
 
 
-def _end_of_shank(leg: Leg) -> float:
-    """Return how low the box of a shank may reach, in its frame [m]."""
-    ankle = float(leg.chain.positions[leg.knee + 1][2])
-    height = -float(leg.chain.tip.position[2])
-    return ankle + _ABOVE_ANKLE if height < _ABOVE_SOLE else -np.inf
+def _cut(
+    low: np.ndarray, high: np.ndarray, way: np.ndarray, end: np.ndarray, spare: float = 0.0
+) -> None:
+    """Cut a box off in the direction of the axis nearest to `way`, `spare` before `end` [m]."""
+    axis = int(np.argmax(np.abs(way)))
+    if way[axis] < 0.0:
+        low[axis] = max(low[axis], end[axis] + spare)
+    else:
+        high[axis] = min(high[axis], end[axis] - spare)
 
 
 def _capsules(leg: Leg, boxes: Mapping[int, Box]) -> Iterable[Capsule]:

@@ -15,6 +15,7 @@ from jaxleas.types import InputError, Pose
 
 MOVING = ("revolute", "continuous")
 _MOST_LISTED = 60
+_MOST_JOINTS = 500
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +125,8 @@ def read_tree(path: Path, search: MeshSearch) -> UrdfTree:
         raise InputError(f"{path} is a xacro file: write the URDF that it makes, and give that")
     element = urdf_element(path)
     joints = tuple(urdf_joints(path, element))
+    if len(joints) > _MOST_JOINTS:
+        raise InputError(f"{path} has {len(joints)} joints, more than the {_MOST_JOINTS} accepted")
     bodies = read_bodies(path, element, search)
     children: set[str] = set()
     for joint in joints:

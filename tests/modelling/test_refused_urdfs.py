@@ -1,8 +1,12 @@
 """URDFs and choices that are no good: one sentence, and nothing is written."""
 
+from itertools import pairwise
+
 import pytest
 
 from jaxleas import cli
+from jaxleas.modelling.options import MakeOptions
+from jaxleas.modelling.sketch import sketch_robot
 from jaxleas.types import InputError
 
 from . import urdfs
@@ -58,9 +62,8 @@ def test_meshes_that_are_not_at_hand_are_said_and_inertia_stands_in(tmp_path, ca
     said = refusal(tmp_path, urdf, *FEET, "--half-size", 0.1, 0.05)
     assert "the frame of 'l_foot' is not at its sole: by its inertia" in said
     assert "--sole X Y Z" in said
-    arguments = (*FEET, "--half-size", 0.1, 0.05, "--sole", 0.03, 0, -0.06, "--samples", 20_000)
-    cli.run(["robot", "make", str(urdf), "--out", str(tmp_path / "toy.json"), *map(str, arguments)])
-    assert (tmp_path / "toy.json").is_file()
+    options = MakeOptions(feet=("l_foot", "r_foot"), half_size=(0.1, 0.05), sole=(0.03, 0.0, -0.06))
+    assert len(sketch_robot(urdf, options, print).stance.legs) == 2, "stated, it can be made"
 
 
 def test_a_stated_sole_is_checked(tmp_path):
@@ -142,3 +145,23 @@ def test_files_that_are_no_urdf_are_refused(tmp_path):
         [joint("j", ("base", "a"), "1 0 0", "0 0 0", (-1, 1))],
     )
     assert "link 'base' is not one of a URDF" in refusal(tmp_path, heavy, "--feet", "a")
+
+
+def test_endless_chains_are_refused(tmp_path):
+    names = [f"link_{index}" for index in range(1000)]
+    joints = [fixed(f"to_{b}", (a, b), "0 0 1") for a, b in pairwise(names)]
+    urdf = urdfs.write(tmp_path / "chain.urdf", [link(name, 1.0) for name in names], joints)
+    assert "has 999 joints, more than the 500 accepted" in refusal(
+        tmp_path, urdf, "--feet", "link_9"
+    )
+
+
+def test_an_interrupted_command_leaves_nothing(tmp_path, monkeypatch):
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    urdf = urdfs.walker(tmp_path / "walker.urdf")
+    monkeypatch.setattr("jaxleas.modelling.making.draw_standing", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        cli.run(["robot", "make", str(urdf), *FEET, "--out", str(tmp_path / "robots/toy.json")])
+    assert list(tmp_path.iterdir()) == [urdf]
