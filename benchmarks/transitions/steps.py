@@ -12,32 +12,35 @@ from typing import Any
 import numpy as np
 
 from jaxleas.envs import HostPool
-from jaxleas.envs.gait_planning import GaitPlanning, GaitPlanningConfig, GaitWorldsConfig
-from jaxleas.envs.gait_planning.candidates import candidate_of, command_of
+from jaxleas.envs.gait_planning import (
+    GaitPlanning,
+    GaitPlanningConfig,
+    GaitWorldsConfig,
+    candidate_of,
+    command_of,
+)
 from jaxleas.training import read_policy
 
 ROBOTS, STEPS, SPREAD = 2048, 8, 0.15
 FIELDS = 60
 
-Act = Callable[[Any, np.random.Generator], dict[str, np.ndarray]]
+Act = Callable[[Any, np.random.Generator], np.ndarray]
 
 
-def random_action(seen: Any, generator: np.random.Generator) -> dict[str, np.ndarray]:
+def random_action(seen: Any, generator: np.random.Generator) -> np.ndarray:
     """Return actions near the middle of their ranges, and any support."""
     count = len(seen["attitude"])
-    return {
-        "phase": np.tanh(SPREAD * generator.normal(size=(count, 15))),
-        "support": generator.integers(5, size=count),
-    }
+    numbers = np.tanh(SPREAD * generator.normal(size=(count, 15)))
+    return np.concatenate([numbers, generator.integers(5, size=(count, 1))], axis=1)
 
 
 def action_of(file: str) -> Act:
     """Return the actions of a policy."""
     policy = read_policy(file, of=GaitPlanningConfig)
 
-    def act(seen: Any, generator: np.random.Generator) -> dict[str, np.ndarray]:
+    def act(seen: Any, generator: np.random.Generator) -> np.ndarray:
         del generator
-        return {name: np.asarray(part) for name, part in policy.action(seen).items()}
+        return np.asarray(policy.action(seen))
 
     return act
 
@@ -57,7 +60,7 @@ def main(arguments: list[str]) -> None:
         seen = task.look(ground, state)
         action = act(seen, generator)
         begin = time.process_time()
-        command = command_of(config, action)
+        command = command_of(config, ground, state, action)
         candidate = candidate_of(config, ground, state, command)
         task.decide(state.phase, candidate, command.times, everyone)
         solved = time.process_time()

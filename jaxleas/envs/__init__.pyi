@@ -6,6 +6,8 @@ from .array_checks import require_arrays as require_arrays
 from .array_checks import require_rows as require_rows
 from .array_checks import require_same as require_same
 from .environment import Task as Task
+from .heads.cases import Cases as Cases
+from .heads.cases import numbers_of as numbers_of
 from .heads.categorical import Categorical as Categorical
 from .heads.head import Head as Head
 from .heads.normal import Normal as Normal

@@ -95,12 +95,14 @@ def _search(task: GaitPlanning, first: int) -> Demonstrations:
 
 def _shown(task: GaitPlanning, ground: Any, gait: Gait) -> Demonstrations:
     """Return the transitions of one crawl."""
-    before = taken(gait.states, slice(None, -1))
-    action = action_of(task.config, gait.commands)
+    before, after = (taken(gait.states, part) for part in (slice(None, -1), slice(1, None)))
+    action = action_of(task.config, before, gait.commands, after.phase)
+    support = np.asarray(gait.commands.support)
     seen = np.asarray(task.signature.pack(task.look(ground, before)))
-    placed = ~(in_contact(before.phase.support) & STANDING[action["support"]])
-    numbers = action["phase"].astype(np.float32)
-    return Demonstrations(seen.astype(np.float32), numbers, action["support"], placed)
+    placed = ~(in_contact(before.phase.support) & STANDING[support])
+    return Demonstrations(
+        seen.astype(np.float32), action[:, :-1].astype(np.float32), support, placed
+    )
 
 
 def _read(path: Path, wanted: str) -> Demonstrations:

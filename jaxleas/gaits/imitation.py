@@ -9,6 +9,7 @@ import numpy as np
 import optax
 from jax import Array
 
+from jaxleas.envs import Cases, numbers_of
 from jaxleas.envs.gait_planning import GaitPlanning
 from jaxleas.gaits.demonstrations import Demonstrations
 from jaxleas.training import (
@@ -89,10 +90,10 @@ def _with_mirror_images(networks: ActorCritic, shown: Demonstrations) -> list[np
     feet = np.where(np.repeat(shown.placed, 2, axis=1), 1.0, MEANINGLESS)
     base, times = np.ones((count, 5)), np.full((count, 2), OF_TIMES)
     weights = np.concatenate([base, feet, times], axis=1).astype(np.float32)
-    parts = zip(signature.heads, signature.raw(jnp.asarray(raw)), strict=True)
-    image = np.concatenate([np.asarray(head.mirrored_raw(part)) for head, part in parts], axis=1)
+    head = _head_of(networks)
+    image = np.asarray(head.mirrored_raw(jnp.asarray(raw)))
     # A mirror swaps feet, and weights have no sign.
-    swapped = np.abs(np.asarray(signature.heads[0].mirrored_raw(jnp.asarray(weights))))
+    swapped = np.abs(np.asarray(head.numbers.mirrored_raw(jnp.asarray(weights))))
     seen = np.asarray(signature.mirror(jnp.asarray(shown.observation)))
     return [
         np.concatenate([shown.observation, seen]),
@@ -102,22 +103,28 @@ def _with_mirror_images(networks: ActorCritic, shown: Demonstrations) -> list[np
     ]
 
 
+def _head_of(networks: ActorCritic) -> Cases:
+    (head,) = networks.signature.heads
+    assert isinstance(head, Cases)  # demonstrations name supports
+    return head
+
+
 def _step_of(
     config: RunConfig, networks: ActorCritic, optimiser: optax.GradientTransformation
 ) -> Callable[..., tuple[Any, Any, Array]]:
     normaliser = initial_normaliser(config.network, networks.signature)
+    head = _head_of(networks)
 
     def loss_of(params: Any, rows: list[Array], noise: Array) -> Array:
         observation, numbers, support, weights = rows
         seen = jax.vmap(lambda row: normalise(row, normaliser))(observation)
         answer = networks.answer(params, seen)
-        phase, choice = networks.signature.distributions(answer)
+        (cases,) = networks.signature.distributions(answer)
+        phase = numbers_of(cases, support)
         deviation = jnp.sqrt(jnp.square(phase.deviation) + NARROW**2)
         distance = (numbers + noise - phase.location) / deviation
         unlikely = 0.5 * jnp.square(distance) + jnp.log(deviation)
-        picked = jnp.take_along_axis(
-            choice.log_probability, support[:, None].astype(jnp.int32), axis=1
-        )
+        picked = head.choice.log_density(support[:, None], cases.choice)
         return jnp.mean(jnp.sum(weights * unlikely, axis=1)) - OF_SUPPORT * jnp.mean(picked)
 
     def step(params: Any, state: Any, rows: list[Array], noise: Array) -> tuple[Any, Any, Array]:

@@ -61,7 +61,7 @@ def walk_policy(policy: Policy, ground: Ground, start: PlanningState, most: int)
             ending, cause = "refused", _cause_of(result)
             break
         states.append(after)
-        commands.append(command_of(policy.config, action))
+        commands.append(command_of(policy.config, ground, state, action))
         if result.reached[0]:
             ending = "reached"
     return PolicyWay(gait_of(ending, states, commands), cause)

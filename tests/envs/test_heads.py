@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxleas.envs.heads import Ball, Categorical, Interval, Normal
+from jaxleas.envs.heads import Ball, Cases, Categorical, Interval, Normal
 from jaxleas.envs.mirror import Mirror
 from jaxleas.envs.part import Part
 from jaxleas.envs.signature import Signature
@@ -13,7 +13,8 @@ from jaxleas.types import InputError
 
 NORMAL = Normal("move", (Ball(2.0, 2), Interval(1.0, 5.0)), Mirror((0, 1, 2), (1.0, -1.0, 1.0)))
 CHOICE = Categorical("foot", 5, (1, 0, 3, 2, 4))
-HEADS = pytest.mark.parametrize("head", [NORMAL, CHOICE], ids=lambda head: head.name)
+CASES = Cases("step", CHOICE, NORMAL)
+HEADS = pytest.mark.parametrize("head", [NORMAL, CHOICE, CASES], ids=lambda head: head.name)
 FLAT = Signature((Part("all", (3,), mirror=Mirror.of_signs([1.0, -1.0, 1.0])),), (NORMAL, CHOICE))
 
 
@@ -65,6 +66,48 @@ def test_log_densities_are_those_of_numpy():
     exact = np.log(exact / exact.sum(axis=1, keepdims=True))[np.arange(64), choice[:, 0]]
     found = CHOICE.log_density(jnp.asarray(choice, jnp.float32), CHOICE.distribution(logits))
     np.testing.assert_allclose(found, exact, atol=1e-5)
+
+
+def test_numbers_of_a_case_are_drawn_from_its_own_distribution():
+    locations, spreads, scores = (each[:1] for each in logits_of(CASES, count=1))
+    many = [jnp.broadcast_to(each, (60_000, each.shape[-1])) for each in (locations, spreads)]
+    distribution = CASES.distribution(*many, jnp.broadcast_to(scores, (60_000, 5)))
+    raw = np.asarray(CASES.sample(distribution, CASES.draw_noise(jax.random.key(2), (60_000,))))
+    for case in range(5):
+        mine = raw[raw[:, -1] == case, :-1]
+        place = np.asarray(locations[0]).reshape(5, 3)[case]
+        deviation = np.log1p(np.exp(np.asarray(spreads[0]).reshape(5, 3)[case])) + 1e-3
+        few = 5.0 / np.sqrt(len(mine))
+        np.testing.assert_array_less(np.abs(mine.mean(axis=0) - place), few * deviation)
+        np.testing.assert_allclose(mine.std(axis=0), deviation, rtol=few)
+    # The density of a sample is that of its case times that of its numbers in it.
+    probability = np.exp(scores[0]) / np.exp(scores[0]).sum()
+    case = raw[:100, -1].astype(int)
+    place = np.asarray(locations[0], np.float64).reshape(5, 3)[case]
+    deviation = np.log1p(np.exp(np.asarray(spreads[0], np.float64).reshape(5, 3)[case])) + 1e-3
+    normal = np.exp(-0.5 * ((raw[:100, :-1] - place) / deviation) ** 2)
+    expected = np.log(probability[case]) + np.log(normal / (deviation * np.sqrt(2 * np.pi))).sum(
+        axis=1
+    )
+    first = jax.tree.map(lambda leaf: leaf[:100], distribution)
+    np.testing.assert_allclose(CASES.log_density(raw[:100], first), expected, atol=1e-4)
+    # By samples, the entropy of the raw action; the head adds the slope of the tanh.
+    slope = 2.0 * (np.log(2.0) - raw[:, :-1] - np.logaddexp(0.0, -2.0 * raw[:, :-1]))
+    sampled = -np.asarray(CASES.log_density(raw, distribution)) + slope.sum(axis=1)
+    noise = jax.random.normal(jax.random.key(4), (60_000, 3))
+    estimate = np.asarray(CASES.entropy(distribution, noise))
+    assert estimate.mean() == pytest.approx(sampled.mean(), abs=0.06)
+
+
+def test_the_mode_of_cases_is_the_likeliest_case_and_its_own_numbers():
+    locations, spreads, scores = logits_of(CASES)
+    mode = np.asarray(CASES.mode(locations, spreads, scores))
+    likeliest = np.argmax(np.asarray(scores), axis=1)
+    np.testing.assert_array_equal(mode[:, -1], likeliest)
+    own = np.asarray(locations).reshape(64, 5, 3)[np.arange(64), likeliest]
+    np.testing.assert_allclose(mode[:, :-1], np.tanh(own), atol=1e-6)
+    command = np.asarray(CASES.command(jnp.asarray(mode)))
+    np.testing.assert_allclose(command[:, :-1], NORMAL.command(mode[:, :-1]), atol=1e-6)
 
 
 @HEADS
@@ -131,6 +174,10 @@ def mirrored(mirror):
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
+        (
+            lambda: Cases("step", Categorical("foot", 5), NORMAL),
+            "'step' has a mirror for its choice or for its numbers alone: give both, or none",
+        ),
         (lambda: Categorical("foot", 1), "'foot' has 1 choices; .* two at least"),
         (lambda: Categorical("foot", 2.0), "'foot' has 2.0 choices"),
         (lambda: Categorical("foot", 3, (0, 1)), r"mirror_order = \(0, 1\)"),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jaxleas.envs.gait_planning import GaitPlanning, GaitPlanningConfig, GaitWorldsConfig
-from jaxleas.envs.gait_planning.candidates import action_of
+from jaxleas.envs.gait_planning.actions import action_of
 from jaxleas.gaits import CrawlSettings, search_crawls
 from jaxleas.gaits.on_terrain import OnTerrain
 from tests.gaits.worlds import platform, with_gap
@@ -35,24 +35,25 @@ def test_a_crawl_crosses_a_gap_to_the_goal(across):
     assert 8 <= len(gait.commands.turn) <= 60
 
 
-def test_the_task_accepts_every_transition_and_gets_to_the_same_states(across):
+@pytest.mark.parametrize("placing", ["base_first", "feet_first"])
+def test_the_task_accepts_every_transition_and_gets_to_the_same_states(across, placing):
     place, gait = across
-    task = GaitPlanning(CONFIG, GaitWorldsConfig())
+    task = GaitPlanning(GaitPlanningConfig(placing=placing), GaitWorldsConfig())
     weights = {f"reward.{name}": value for name, value in CONFIG.reward}
     state = jax.tree.map(lambda leaf: leaf[:1], gait.states)
     for number in range(len(gait.commands.turn)):
         command = type(gait.commands)(*(part[number : number + 1] for part in gait.commands))
         ground = place.footing.ground
-        action = action_of(CONFIG, command)
+        after = jax.tree.map(lambda leaf, row=number + 1: leaf[row : row + 1], gait.states.phase)
+        action = action_of(task.config, state, command, after)
         state, result = task.advance(
             ground, weights, replace(state, step=0 * state.step), action, ()
         )
         assert not result.terminated[0], (number, result.measures)
-        wanted = jax.tree.map(lambda leaf, row=number + 1: leaf[row : row + 1], gait.states.phase)
-        moved = wanted.support != 0  # a foot in the air is where the command plans it
-        np.testing.assert_array_equal(state.phase.support, wanted.support)
-        np.testing.assert_allclose(state.phase.com, wanted.com, atol=1e-5)
-        np.testing.assert_allclose(state.phase.feet, wanted.feet, atol=1e-4 if moved else 1e-5)
+        moved = after.support != 0  # a foot in the air is where the command plans it
+        np.testing.assert_array_equal(state.phase.support, after.support)
+        np.testing.assert_allclose(state.phase.com, after.com, atol=1e-5)
+        np.testing.assert_allclose(state.phase.feet, after.feet, atol=1e-4 if moved else 1e-5)
     assert result.reached[0]
 
 

@@ -1,7 +1,7 @@
-from .candidates import Command as Command
-from .candidates import action_of as action_of
+from .actions import Command as Command
+from .actions import action_of as action_of
+from .actions import command_of as command_of
 from .candidates import candidate_of as candidate_of
-from .candidates import command_of as command_of
 from .config import GaitPlanningConfig as GaitPlanningConfig
 from .config import GaitWorldsConfig as GaitWorldsConfig
 from .config import Shares as Shares

@@ -92,8 +92,11 @@ class GaitPlanningConfig(TaskConfig):
     robot: QuadrupedConfig = QuadrupedConfig()
     action: ActionScales = ActionScales()
     contact_code: Literal["five_way", "published"] = "five_way"
-    """How an action names the feet in contact: one of five supports, a head of its own; or three
-    numbers whose signs are bits (D table I)."""
+    """How an action names the feet in contact: one of five supports, each with numbers of its own;
+    or three numbers whose signs are bits (D table I)."""
+    placing: Literal["base_first", "feet_first"] = "base_first"
+    """What an action places first: the base, and the feet about it (D table I); or the feet about
+    the present base, and then the base about the mean of those in contact."""
     observation: Literal["light", "published"] = "light"
     """Heights that are seen: 138 around the feet, under the trunk and ahead, for a dense network;
     or a map of 32 x 32 (for `network.kind: maps`)."""

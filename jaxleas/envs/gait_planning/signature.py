@@ -3,7 +3,8 @@
 import math
 from typing import Any
 
-from jaxleas.envs import Categorical, Interval, Mirror, Normal, Part, Signature
+from jaxleas.envs import Cases, Categorical, Interval, Mirror, Normal, Part, Signature
+from jaxleas.envs.gait_planning.actions import largest_offset
 from jaxleas.envs.gait_planning.config import GaitPlanningConfig
 from jaxleas.envs.gait_planning.layout import MAP_SIDE, HeightPoints, light_points, map_points
 from jaxleas.envs.gait_planning.quadruped import FEET
@@ -14,6 +15,7 @@ HIGHEST = 0.5
 SEEN_HEIGHT, SEEN_FOOT, SEEN_SPEED = 0.15, 0.2, 0.5
 """What networks see as 1: heights [m], offsets of feet [m], velocities [m/s]."""
 VECTOR = Mirror.of_signs([1.0, -1.0])
+PHASE = "phase"
 SWAPPED = (1, 0, 3, 2)
 """Foot that each foot becomes when left and right are swapped."""
 FEET_MIRROR = Mirror(
@@ -44,12 +46,12 @@ def signature_of(config: GaitPlanningConfig) -> Signature:
         Part("contacts", (len(FEET),), mirror=Mirror(SWAPPED, (1.0,) * len(FEET))),
         Part("heights", heights_shape(config), deviation=SEEN_HEIGHT, mirror=mirror),
     )
-    scales = config.action
+    scales, feet = config.action, largest_offset(config)
     numbers = [
         (Interval(-scales.turn, scales.turn), Mirror.of_signs([-1.0])),
         (Interval(-scales.step, scales.step, 2), VECTOR),
         (Interval(-scales.speed, scales.speed, 2), VECTOR),
-        (Interval(-scales.foot, scales.foot, 2 * len(FEET)), FEET_MIRROR),
+        (Interval(-feet, feet, 2 * len(FEET)), FEET_MIRROR),
         (
             Interval(scales.middle_time - scales.time, scales.middle_time + scales.time, 2),
             Mirror.of_signs([1.0, 1.0]),
@@ -57,14 +59,14 @@ def signature_of(config: GaitPlanningConfig) -> Signature:
     ]
     if config.contact_code == "five_way":
         choice = Categorical("support", SUPPORTS, MIRRORED)
-        return Signature(parts, (_normal(config, numbers), choice))
+        return Signature(parts, (Cases(PHASE, choice, _normal(config, numbers)),))
     code = (Interval(-1.0, 1.0, CODE_SIZE), Mirror.of_signs(CODE_MIRROR))
     return Signature(parts, (_normal(config, [*numbers, code]),))
 
 
 def _normal(config: GaitPlanningConfig, numbers: list[tuple[Interval, Mirror]]) -> Normal:
     return Normal(
-        "phase",
+        PHASE,
         tuple(scale for scale, _ in numbers),
         Mirror.join([mirror for _, mirror in numbers]),
         gain=config.action_gain,
@@ -78,5 +80,6 @@ def description_of(config: GaitPlanningConfig) -> dict[str, Any]:
         "supports": STANDING.tolist(),
         "height_points": heights_seen(config).points.tolist(),
         "height_range": [-HIGHEST, HIGHEST],
-        "phase": ["turn", "step (2)", "velocity (2)", "feet (4 x 2)", "t_E*, t_S"],
+        "phase": ["turn", "step (2)", "velocity (2)", "feet (4 x 2)", "t_E*, t_S", "support"],
+        "placing": config.placing,
     }

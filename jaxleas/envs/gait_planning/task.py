@@ -9,7 +9,8 @@ import numpy as np
 
 from jaxleas.dynamics import REACH_UNIT
 from jaxleas.envs import Examination, Starts, StepResult, Task, TaskConfig, WorldsConfig
-from jaxleas.envs.gait_planning.candidates import candidate_of, command_of
+from jaxleas.envs.gait_planning.actions import command_of
+from jaxleas.envs.gait_planning.candidates import candidate_of
 from jaxleas.envs.gait_planning.config import GaitPlanningConfig, GaitWorldsConfig
 from jaxleas.envs.gait_planning.deciding import decide_phases
 from jaxleas.envs.gait_planning.footholds import footholds_are_safe, trunk_is_free
@@ -62,7 +63,7 @@ class GaitPlanning(Task):
         """Return the next phases; where one is refused, the episode ends and its phase stays."""
         del disturbance
         config = self.config
-        command = command_of(config, action)
+        command = command_of(config, world, state, action)
         candidate = candidate_of(config, world, state, command)
         stands = footholds_are_safe(world, state.field, candidate)
         clear = trunk_is_free(config.robot, world, state.field, candidate)

@@ -157,6 +157,10 @@ class Normal:
     def onnx(self, nodes: OnnxNodes, logits: str) -> str:
         """Add tanh and scales; the deviations in the network's answer are left out."""
         location = nodes.columns(logits, 0, self.size)
+        return self.onnx_of_location(nodes, location, self.name)
+
+    def onnx_of_location(self, nodes: OnnxNodes, location: str, output: str = "") -> str:
+        """Add the nodes from the network's locations to the command."""
         if self.gain != 1.0:
             location = nodes.add("Mul", location, nodes.constant(self.gain))
         action = nodes.add("Tanh", location)
@@ -165,7 +169,7 @@ class Normal:
             part = nodes.columns(action, begin, begin + scale.size)
             parts.append(scale.onnx(nodes, part))
             begin += scale.size
-        return nodes.add("Concat", *parts, output=self.name, axis=1)
+        return nodes.add("Concat", *parts, output=output, axis=1)
 
 
 def tanh_log_slope(raw: Float[Array, "*batch size"]) -> Float[Array, "*batch size"]:

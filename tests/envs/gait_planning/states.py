@@ -33,10 +33,8 @@ def drawn_states(task: GaitPlanning, ground: Ground, count: int, seed: int) -> P
     return HostPool.of(starts).take(np.arange(count))[0]
 
 
-def drawn_actions(count: int, seed: int, size: float = 0.15) -> dict[str, np.ndarray]:
-    """Return actions near the middle of their ranges."""
+def drawn_actions(count: int, seed: int, size: float = 0.15) -> np.ndarray:
+    """Return actions near the middle of their ranges: 15 numbers, then the support."""
     generator = np.random.default_rng(seed)
-    return {
-        "phase": np.tanh(size * generator.normal(size=(count, 15))),
-        "support": generator.integers(5, size=count),
-    }
+    numbers = np.tanh(size * generator.normal(size=(count, 15)))
+    return np.concatenate([numbers, generator.integers(5, size=(count, 1))], axis=1)

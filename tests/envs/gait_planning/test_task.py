@@ -109,7 +109,7 @@ def test_rewards_are_those_of_table_two(walked):
 def test_goals_within_half_a_metre_are_reached(task, ground):
     state = drawn_states(task, ground, COUNT, seed=1)
     near = state.phase.com[:, :2] + np.array([0.4, 0.0], np.float32)
-    action = {"phase": np.zeros((COUNT, 15)), "support": np.zeros(COUNT, int)}
+    action = np.zeros((COUNT, 16))
     for goal, reached in ((near, True), (near + np.float32(0.2), False)):
         _, result = task.advance(ground, WEIGHTS, replace(state, goal=goal), action, ())
         assert (result.reached == reached).all()
@@ -119,7 +119,7 @@ def test_goals_within_half_a_metre_are_reached(task, ground):
 def test_grounded_counts_phases_since_a_foot_was_lifted(walked):
     first, action, after, _ = walked[0]
     assert (first.grounded == 1).all()
-    expected = np.where(STANDING[action["support"]], 2, 0)
+    expected = np.where(STANDING[action[:, -1].astype(int)], 2, 0)
     np.testing.assert_array_equal(after.grounded, expected)
 
 
@@ -190,10 +190,7 @@ def test_all_is_the_same_in_a_mirror(observation, ground):
 
     head = signature.heads[0]
     action = drawn_actions(COUNT, seed=8)
-    image_action = {
-        "phase": np.asarray(head.mirrored_raw(jnp.asarray(action["phase"]))),
-        "support": np.asarray(MIRRORED)[action["support"]],
-    }
+    image_action = np.asarray(head.mirrored_raw(jnp.asarray(action)))
     after, result = task.advance(ground, WEIGHTS, state, action, ())
     image_after, image_result = task.advance(image_ground, WEIGHTS, image, image_action, ())
     same = result.terminated == image_result.terminated
@@ -228,10 +225,10 @@ def test_the_published_code_decides_like_the_head(ground):
         Lenient(make_task(contact_code=code).config, WORLDS) for code in ("five_way", "published")
     )
     state = drawn_states(five, ground, 5, seed=1)
-    numbers = drawn_actions(5, seed=2)["phase"]
+    numbers = drawn_actions(5, seed=2)[:, :-1]
     code = np.array([[-1, 1, 1], [1, -1, -1], [1, -1, 1], [1, 1, -1], [1, 1, 1]]) * 0.5
-    by_head = {"phase": numbers, "support": np.arange(5)}
-    first, _ = five.advance(ground, WEIGHTS, state, by_head, ())
+    by_index = np.concatenate([numbers, np.arange(5)[:, None]], axis=1)
+    first, _ = five.advance(ground, WEIGHTS, state, by_index, ())
     action = np.concatenate([numbers, code], axis=1)
     second, _ = published.advance(ground, WEIGHTS, state, action, ())
     np.testing.assert_array_equal(first.phase.feet, second.phase.feet)

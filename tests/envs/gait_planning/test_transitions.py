@@ -11,7 +11,7 @@ from jaxleas.dynamics import (
     Transitions,
     margins_by_definition,
 )
-from jaxleas.envs.gait_planning.candidates import candidate_of, command_of
+from jaxleas.envs.gait_planning import candidate_of, command_of
 from jaxleas.envs.gait_planning.supports import STANDING
 from tests.envs.gait_planning.states import drawn_actions, drawn_states, make_task
 
@@ -65,8 +65,8 @@ def test_highs_confirms_every_verdict(published):
     action = drawn_actions(COUNT, seed=2)
     if published:
         signs = np.random.default_rng(3).uniform(-1, 1, (COUNT, 3))
-        action = np.concatenate([action["phase"], signs], axis=1)
-    command = command_of(task.config, action)
+        action = np.concatenate([action[:, :-1], signs], axis=1)
+    command = command_of(task.config, ground, state, action)
     candidate = candidate_of(task.config, ground, state, command)
     feasible, unknown = task.decide(state.phase, candidate, command.times, np.ones(COUNT, bool))
     assert not unknown.any()
