@@ -25,6 +25,9 @@ def rows_of_cells(cells: Sequence[Cell], machine: str) -> list[Measurement]:
     for yaw in (0, 180):
         turned = [cell for cell in _of(cells, "dead_end") if cell["yaw"] == yaw]
         rows.append(_row(f"dead_end_{yaw}_worst_invalid", "invalid", turned))
+    for yaw in (0, 180):
+        noisy = [cell for cell in _of(cells, "transitions_noise") if cell["yaw"] == yaw]
+        rows.append(_row(f"noise_{yaw}_worst", "success", noisy))
     limits = _of(cells, "limits")
     crossable = [cell for cell in limits if cell["expectation"] == "cross"]
     rows.append(_row("limits_worst_invalid", "invalid", limits))

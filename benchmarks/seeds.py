@@ -24,11 +24,16 @@ from benchmarks.seed_rows import rows_of_cells
 from jaxleas.cli_guard import UsageError, run_guarded
 from jaxleas.evaluation import SUITES, Evaluation, now, read_evaluation
 from jaxleas.files import write_json
+from jaxleas.terrain import noise_of
 from jaxleas.training import RunConfig, load_run_config
 from jaxleas.types import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
-JUDGED = ("transitions", "hole", "wall", "circuit", "dead_end", "limits")
+NOISY = "transitions_noise"
+"""The suite `transitions`, where policy and guard see maps of sensors."""
+NOISE = ("white=0.02", "missing=0.02", "quantisation=0.01")
+"""What is wrong with these maps."""
+JUDGED = ("transitions", "hole", "wall", "circuit", "dead_end", "limits", NOISY)
 STARTS = 1000
 """Starts in each cell."""
 MOST_AT_LIMITS = 200
@@ -100,8 +105,11 @@ def train_and_judge(config: Path, run: Path, seed: int, given: argparse.Namespac
     for suite in given.suites:
         starts = starts_in(suite, given.starts)
         if kept(run, suite, starts) is None:
-            options = ("--starts", starts, "--no-baseline")
-            _run("-m", "jaxleas.cli", "evaluate", run, "--suite", suite, *options)
+            options: tuple[object, ...] = ("--starts", starts, "--no-baseline")
+            if suite == NOISY:
+                options = (*options, "--json", _file(run, suite), "--noise", *NOISE)
+            named = suite.removesuffix("_noise")
+            _run("-m", "jaxleas.cli", "evaluate", run, "--suite", named, *options)
     found = [kept(run, suite, starts_in(suite, given.starts)) for suite in given.suites]
     return Trained(seed, rows_of(run)[-1]["seconds"], tuple(each for each in found if each))
 
@@ -127,7 +135,7 @@ def is_trained(run: Path) -> bool:
 
 def kept(run: Path, suite: str, starts: int) -> Evaluation | None:
     """Return a run's evaluation, if it is of the present policy and of as many starts."""
-    path, policy = run / "evaluation" / f"{suite}.json", run / "policy.npz"
+    path, policy = _file(run, suite), run / "policy.npz"
     if not path.exists():
         return None
     try:
@@ -135,6 +143,7 @@ def kept(run: Path, suite: str, starts: int) -> Evaluation | None:
     except InputError:  # damaged, or of another version: it is made again
         return None
     same = found.fingerprint == hashlib.sha256(policy.read_bytes()).hexdigest()
+    same &= found.noise == (noise_of(NOISE) if suite == NOISY else None)
     return found if same and all(cell.starts >= starts for cell in found.cells) else None
 
 
@@ -148,7 +157,8 @@ def cells_of(trained: Sequence[Trained]) -> list[dict[str, Any]]:
     for one in trained:
         for evaluation in one.evaluations:
             for cell in evaluation.cells:
-                key = evaluation.suite, cell.name, cell.yaw
+                suite = evaluation.suite + "_noise" * (evaluation.noise is not None)
+                key = suite, cell.name, cell.yaw
                 entry = cells.setdefault(
                     key,
                     {
@@ -188,6 +198,11 @@ def table_of(document: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _file(run: Path, suite: str) -> Path:
+    """Return where a run folder keeps its evaluation on a suite."""
+    return run / "evaluation" / f"{suite}.json"
+
+
 def _run(*words: object) -> None:
     done = subprocess.run([sys.executable, *map(str, words)], cwd=ROOT, check=False)
     if done.returncode:
@@ -202,7 +217,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("config", nargs="?", type=Path, default=ROOT / "configs/leas_p1.yaml")
     parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2, 3, 4])
     parser.add_argument("--runs", type=lambda text: Path(text).absolute(), default=ROOT / "runs")
-    parser.add_argument("--suites", nargs="+", choices=SUITES, default=JUDGED)
+    parser.add_argument("--suites", nargs="+", choices=(*SUITES, NOISY), default=JUDGED)
     parser.add_argument("--starts", type=int, default=STARTS)
     results = ROOT / "benchmarks/results"
     parser.add_argument("--out", type=Path, default=results / "seeds.json")

@@ -68,7 +68,7 @@ def walk_from_starts(
     def advance(carry, noise_now):
         episode, observation = carry
         action, choice = act(observation, noise_now)
-        after, step = env.step(world.atlas, weights, episode, action)
+        after, step = env.step(world.atlas, weights, episode, action, world.seen)
         flags = step.terminated, step.truncated, step.reached
         return (after, step.observation), (after.motion, choice, step.reward, flags)
 

@@ -37,6 +37,7 @@ from .report_basis import make_report_basis as make_report_basis
 from .result_file import AreaResult as AreaResult
 from .result_file import CellResult as CellResult
 from .result_file import Evaluation as Evaluation
+from .result_file import MapCells as MapCells
 from .result_file import now as now
 from .result_file import read_evaluation as read_evaluation
 from .result_file import write_evaluation as write_evaluation

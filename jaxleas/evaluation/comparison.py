@@ -143,6 +143,7 @@ def _head(
         policies=dict(contenders.fingerprints),
         planners={name: judge.settings.model_dump(mode="json") for name, judge in judges.items()},
         **candidate.terms.describe(),
+        guard=candidate.env.config.guard,
         robot=candidate.env.config.robot,
         scale=suite.scale,
         seed=suite.seed,

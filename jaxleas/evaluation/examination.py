@@ -10,14 +10,20 @@ from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.judge import judge
 from jaxleas.evaluation.refusal import Refusal
 from jaxleas.evaluation.report_basis import ReportBasis
-from jaxleas.evaluation.result_file import Evaluation, now, read_evaluation, write_evaluation
-from jaxleas.evaluation.starts import Grounds
+from jaxleas.evaluation.result_file import (
+    Evaluation,
+    MapCells,
+    now,
+    read_evaluation,
+    write_evaluation,
+)
+from jaxleas.evaluation.starts import Grounds, make_grounds
 from jaxleas.evaluation.suited import suited
 from jaxleas.evaluation.suites import REPORTED, REPORTED_IF_EVALUATED, Suite, make_suite
 from jaxleas.evaluation.terms import Terms
 from jaxleas.files import policy_path
 from jaxleas.guide import BASELINES, LEAS, SteeringMethod, policy_file, read_steering_policy
-from jaxleas.terrain import scale_for
+from jaxleas.terrain import NoiseConfig, scale_for
 from jaxleas.types import InputError
 
 POLICY = LEAS.key
@@ -76,6 +82,7 @@ def examine(
     baseline: bool = True,
     progress: Callable[[str], None] = lambda _: None,
     grounds: Grounds | None = None,
+    noise: NoiseConfig | None = None,
 ) -> Evaluation:
     """Judge a candidate on a suite.
 
@@ -85,17 +92,27 @@ def examine(
         baseline: whether RB-Lin and RB-Kino are judged as well.
         progress: callable that is given the cell that is being walked, in words.
         grounds: height maps of the suite's scenes, if already made.
+        noise: what is wrong with the maps that robots see; None: nothing.
+
+    Raises:
+        InputError: no height is known around any start of a cell.
     """
     begin = time.perf_counter()
     methods = {
         name: method for name, method in candidate.methods.items() if baseline or name == POLICY
     }
+    if noise is not None:
+        plain = make_grounds(suite.cells) if grounds is None else grounds
+        grounds = plain.seen_through(noise, suite.stream())
     cells = judge(candidate.env, methods, suite, progress, grounds)
     return Evaluation(
         suite=suite.name,
         policy=str(candidate.path),
         fingerprint=candidate.fingerprint,
         **candidate.terms.describe(),
+        guard=candidate.env.config.guard,
+        noise=noise,
+        map_cells=None if grounds is None else MapCells.of(grounds.count),
         robot=candidate.env.config.robot,
         scale=suite.scale,
         seed=suite.seed,

@@ -9,7 +9,7 @@ from jaxleas.envs.steering import SteeringEnv
 from jaxleas.evaluation.exactly import judged_exactly
 from jaxleas.evaluation.result_file import AreaResult, CellResult
 from jaxleas.evaluation.roll_outs import CellRollOut, roll_out_cell
-from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds
+from jaxleas.evaluation.starts import Grounds, draw_starts, make_grounds, require_known_ground
 from jaxleas.evaluation.statistics import wilson_interval
 from jaxleas.evaluation.suites import Cell, Suite
 from jaxleas.guide import SteeringMethod
@@ -37,11 +37,15 @@ def judge(
 
     Returns:
         One result per cell and method, cells in the suite's order.
+
+    Raises:
+        InputError: robots see maps of sensors, and no height is known around any start of a cell.
     """
     grounds = make_grounds(suite.cells) if grounds is None else grounds
     results = []
     for position, cell in enumerate(suite.cells):
         starts = draw_starts(env, grounds, cell, suite.stream())
+        require_known_ground(env, grounds, cell, starts)
         for name, method in methods.items():
             progress(
                 f"{suite.name} {position + 1}/{len(suite.cells)}:"

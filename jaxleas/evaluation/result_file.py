@@ -8,7 +8,9 @@ from pydantic import Field, model_validator
 
 from jaxleas.conditions import STANDARD
 from jaxleas.configuration import Count, Fraction, NonNegative, Positive, Strict
+from jaxleas.envs.steering import GuardConfig
 from jaxleas.files import read_typed, write_json
+from jaxleas.terrain import CellCount, NoiseConfig
 
 VERSION = 1
 
@@ -93,6 +95,25 @@ class CellResult(Strict):
         return self
 
 
+class MapCells(Strict):
+    """What became of the cells with ground in maps from sensors, as shares of them."""
+
+    missing: Fraction
+    """Share whose height was missing."""
+    filled: Fraction
+    """Share that was filled from the rims of its gap."""
+    unknown: Fraction
+    """Share whose height stayed unknown; it is seen as no ground."""
+
+    @classmethod
+    def of(cls, count: CellCount | None) -> Self | None:
+        """Return counted cells, rounded; None where robots see the terrain itself."""
+        if count is None:
+            return None
+        shares = {name: round(float(value), 6) for name, value in vars(count).items()}
+        return cls(**shares)
+
+
 class Evaluation(Strict):
     """One suite judged: the content of an evaluation file."""
 
@@ -111,6 +132,13 @@ class Evaluation(Strict):
     foresight: dict[str, Any] | None = None
     """Refusal of guide paths foreseen to fail: `surrogate` (SHA-256 of its file), `planner`,
     `threshold`."""
+    guard: GuardConfig | None = None
+    """Guard of the policy's walks, which further policies share only if theirs is the same; null in
+    files of earlier versions."""
+    noise: NoiseConfig | None = None
+    """What was wrong with the maps that robots saw; null: they saw the terrain itself."""
+    map_cells: MapCells | None = None
+    """Cells of these maps, counted; null without noise."""
     robot: str
     scale: Positive = 1.0
     """Length in the scenes for one metre of the published ones; 1 in files of earlier versions."""

@@ -50,7 +50,7 @@ def roll_out_cell(
     env: SteeringEnv, grounds: Grounds, method: SteeringMethod, starts: Starts, steps: int
 ) -> CellRollOut:
     """Return the roll-outs from every start of a cell, all at once."""
-    trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints)
+    trips = Trips(grounds.atlas, starts.map_index, starts.motion, starts.waypoints, grounds.sensed)
     result = roll_out(env, method, trips, steps, env.config.goal_radius)
     return CellRollOut(
         starts=starts,

@@ -2,7 +2,7 @@
 
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import jax
@@ -14,8 +14,18 @@ from jaxtyping import Float, Int
 from jaxleas.envs.steering import SteeringEnv, standing_position
 from jaxleas.evaluation.suites import Cell
 from jaxleas.geometry import wrap_angle_on_host
-from jaxleas.terrain import Atlas, HeightMap, Scenario, make_atlas, rasterise
-from jaxleas.types import InputError, RootMotion, is_ground
+from jaxleas.terrain import (
+    Atlas,
+    CellCount,
+    HeightMap,
+    NoiseConfig,
+    Scenario,
+    SensedAtlas,
+    make_atlas,
+    rasterise,
+    sense,
+)
+from jaxleas.types import NO_GROUND_IN_ROOT, InputError, RootMotion, is_ground
 
 RESOLUTION = 0.04
 """Resolution of the height maps used for judging [m]: the same as in training."""
@@ -31,11 +41,20 @@ class Grounds:
         maps: one height map per scene.
         atlas: those maps on the device; one shape for all cells, so that roll-outs compile once.
         index: index of each scene's map, by the scene's identity.
+        sensed: those maps as robots see them; None: robots see the terrain itself.
+        count: what became of their cells, where robots see them through sensors.
     """
 
     maps: list[HeightMap]
     atlas: Atlas
     index: dict[int, int]
+    sensed: SensedAtlas | None = None
+    count: CellCount | None = None
+
+    def seen_through(self, noise: NoiseConfig, seed: int) -> "Grounds":
+        """Return the same scenes, which robots see with noise drawn from a seed."""
+        sensed, count = sense(self.atlas, noise, jax.random.key(seed))
+        return replace(self, sensed=sensed, count=count)
 
 
 def make_grounds(cells: Sequence[Cell], resolution: float = RESOLUTION) -> Grounds:
@@ -115,6 +134,25 @@ def draw_starts(env: SteeringEnv, grounds: Grounds, cell: Cell, seed: int) -> St
             f"no valid start in the area {where} of scene {cell.name!r} after {ROUNDS} draws"
         )
     return Starts(motion, map_index, jnp.asarray(goals[scene], dtype=jnp.float32), area, scene)
+
+
+def require_known_ground(env: SteeringEnv, grounds: Grounds, cell: Cell, starts: Starts) -> None:
+    """Refuse maps of sensors on which no height is known around any start of a cell.
+
+    Around a few starts that may be so by chance: there the robot stands still.
+
+    Raises:
+        InputError: no start has a known height among the points that the robot reads.
+    """
+    if grounds.sensed is None:
+        return
+    sensed, motion = grounds.sensed, starts.motion
+    heights = env.local_heights(sensed, starts.map_index, motion)
+    if not bool(jnp.any(heights > NO_GROUND_IN_ROOT)):
+        raise InputError(
+            f"the noise leaves no height known around any start of {cell.name!r}: lower missing or"
+            " holes, or raise fill"
+        )
 
 
 def _way_ahead(

@@ -1,10 +1,12 @@
 """The function behind `jaxleas rollout`."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from jaxtyping import Bool
 
 from jaxleas.configuration import Allow
 from jaxleas.guide.registry import SteeringName, find_method, require_guardable
@@ -16,8 +18,17 @@ if TYPE_CHECKING:
     from jaxleas.guide.files import Reason
     from jaxleas.guide.rollout import RollOut
     from jaxleas.guide.steering_method import SteeringMethod
-    from jaxleas.terrain import HeightMap
+    from jaxleas.terrain import HeightMap, NoiseConfig
     from jaxleas.types import Query
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What is wrong with the map that robots see, and the seed from which it is drawn."""
+
+    model: "NoiseConfig"
+    seed: int
+
 
 MAX_CONFIGURATIONS = 20_000_000  # in all paths together: about a gigabyte during the roll-out
 
@@ -33,6 +44,8 @@ def rollout(
     picture: Path | None = None,
     exact: bool | None = None,
     guard: bool | None = None,
+    noise: Sequence[str] | None = None,
+    noise_seed: int = 0,
     reading: Reading = READING,
     allow: Allow = (),
 ) -> None:
@@ -51,6 +64,9 @@ def rollout(
             where it is refused; by default wherever the terrain has polygons.
         guard: brake before what R* and C refuse, even where the policy would not; by default as the
             policy's configuration states.
+        noise: what is wrong with the map that policy and guard see, such as white=0.02
+            missing=0.02: the settings of terrain.noise; paths are judged on the true terrain.
+        noise_seed: seed from which it is drawn.
         reading: what the terrain file does not state itself.
         allow: conditions of your own under which the policy was trained and shall walk; by default
             it walks under R* and C.
@@ -63,12 +79,15 @@ def rollout(
     from jaxleas.guide.reconfirming import EndedPaths, polygons_of, reconfirm
     from jaxleas.guide.rollout import paths
     from jaxleas.guide.rollout_report import describe_paths, failure_lines, goals_off_the_map
-    from jaxleas.terrain import import_terrain, require_picture
+    from jaxleas.terrain import import_terrain, noise_of, require_picture
 
     asked = read_queries(queries)
     _require_sizes(steps, len(asked), out)
     if picture is not None:
         require_picture(picture)
+    wrong = noise_of(noise)
+    if not 0 <= noise_seed < 2**31:
+        raise InputError(f"--noise-seed is {noise_seed}; give one from 0 to {2**31 - 1}")
     named = find_method(steering)
     require_guardable(named, guard)
     loaded = load_policy(policy, allow, guard)
@@ -78,7 +97,8 @@ def rollout(
     env = SteeringEnv(loaded.config, allow=allow)
     config = env.config
     method = named.make(env, loaded)
-    walked = walk_queries(env, method, ground, asked, steps)
+    seen = None if wrong is None else Noise(wrong, noise_seed)
+    walked = walk_queries(env, method, ground, asked, steps, seen)
     guide_paths = paths(walked, config.limits.time_step)
     reasons = reasons_of(walked)
     failures = failures_on_map(env, ground, guide_paths, reasons)
@@ -100,15 +120,21 @@ def walk_queries(
     terrain: "HeightMap",
     queries: "Sequence[Query]",
     steps: int,
+    noise: "Noise | None" = None,
 ) -> "RollOut":
-    """Return the roll-out of queries on one height map."""
+    """Return the roll-out of queries on one height map, which robots may see with noise.
+
+    Raises:
+        InputError: with noise, no height is known around a start.
+    """
+    import jax
     import jax.numpy as jnp
 
     from jaxleas.geometry import wrap_angle_on_host
     from jaxleas.guide.places import walking_heights
     from jaxleas.guide.rollout import Trips, roll_out
-    from jaxleas.terrain import make_atlas
-    from jaxleas.types import RootMotion
+    from jaxleas.terrain import make_atlas, sense
+    from jaxleas.types import NO_GROUND_IN_ROOT, RootMotion
 
     yaw = np.array([query.yaw for query in queries])
     start = RootMotion(
@@ -121,13 +147,24 @@ def walk_queries(
     start_heights = np.array([query.position[2] for query in queries])
     height = walking_heights(env.robot, terrain.height_at(goals), start_heights)
     waypoints = np.concatenate([goals, height[:, None]], axis=1)[:, None, :]
-    trips = Trips(
-        make_atlas([terrain]),
-        jnp.zeros(len(queries), jnp.int32),
-        start,
-        jnp.asarray(waypoints, jnp.float32),
-    )
+    atlas, index = make_atlas([terrain]), jnp.zeros(len(queries), jnp.int32)
+    sensed = None
+    if noise is not None:
+        sensed, _ = sense(atlas, noise.model, jax.random.key(noise.seed))
+        known = env.local_heights(sensed, index, start) > NO_GROUND_IN_ROOT
+        _require_known(np.asarray(known))
+    trips = Trips(atlas, index, start, jnp.asarray(waypoints, jnp.float32), sensed)
     return roll_out(env, method, trips, steps, env.config.goal_radius)
+
+
+def _require_known(known: Bool[np.ndarray, "N points"]) -> None:
+    """Refuse starts around which no height is known."""
+    blind = np.flatnonzero(~known.any(axis=1))
+    if len(blind):
+        raise InputError(
+            f"--noise leaves no height known around the start of query {blind[0]}: lower missing"
+            " or holes, or raise fill"
+        )
 
 
 def reasons_of(rollout: "RollOut") -> "list[Reason]":

@@ -9,9 +9,9 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.envs.steering import SteeringEnv
+from jaxleas.envs.steering import SteeringEnv, lag_between
 from jaxleas.guide.trips import RollOut
-from jaxleas.terrain import Atlas
+from jaxleas.terrain import Atlas, SensedAtlas, Terrains
 from jaxleas.types import RootMotion
 
 
@@ -45,6 +45,7 @@ class Course:
     radius: Float[Array, ""]
     env: SteeringEnv = struct.field(pytree_node=False)
     steps: int = struct.field(pytree_node=False)
+    sensed: SensedAtlas | None = None
 
     def begin(self, start: RootMotion) -> OnTheWay:
         """Return the robots at their starts."""
@@ -67,7 +68,10 @@ class Course:
     def look(
         self, robots: OnTheWay
     ) -> tuple[OnTheWay, Float[Array, "N points"], Float[Array, "N 3"]]:
-        """Record the configurations and their margins; also return local heights and goals."""
+        """Record the configurations and their margins; also return heights seen, and goals.
+
+        Margins are those of the true terrain.
+        """
         heights = self.env.local_heights(self.atlas, self.map_index, robots.motion)
         margin = self.env.condition(heights, robots.motion)
         walking, sought = robots.walking, self._seek(robots)
@@ -91,7 +95,18 @@ class Course:
         )
         last = jnp.minimum(sought, self.waypoints.shape[1] - 1)
         goal = jnp.take_along_axis(self.waypoints, last[:, None, None], axis=1)[:, 0]
+        if self.sensed is not None:
+            heights = self.env.local_heights(self._seen(robots), self.map_index, robots.motion)
         return robots, heights, goal
+
+    def _seen(self, robots: OnTheWay) -> Terrains:
+        """Return what the robots see of the terrain, this step's motion being recorded."""
+        if self.sensed is None or not self.sensed.delay:
+            return self.atlas if self.sensed is None else self.sensed
+        then = jnp.maximum(robots.step - self.sensed.delay, 0)
+        past = jax.tree.map(lambda whole: whole[then], robots.record[0])
+        now = robots.motion
+        return self.sensed.late(lag_between(now.position, now.yaw, past.position, past.yaw))
 
     def _foresee(self, robots: OnTheWay, heights: Float[Array, "N points"]) -> tuple[Array, Any]:
         """Return whom the foresight refuses now, and its memory; `begin` asked it at step 0."""
@@ -113,7 +128,7 @@ class Course:
             guarded: whether the environment's guard, if it has one, watches over the method.
         """
         if guarded and self.env.guard is not None:
-            proposed = self.env.guard(self.atlas, self.map_index, robots.motion, proposed)
+            proposed = self.env.guard(self._seen(robots), self.map_index, robots.motion, proposed)
         motion = jax.tree.map(
             lambda new, old: jnp.where(_like(robots.walking, new), new, old),
             proposed,

@@ -9,12 +9,14 @@ import numpy as np
 
 from jaxleas.files import read_json
 from jaxleas.terrain import HeightMap
-from jaxleas.types import InputError, Query
+from jaxleas.types import InputError, Query, is_ground
 
 MAX_QUERIES = 100_000
 MAX_ABOVE_GROUND = 2.0  # a root higher than this [m] is given in other units or in another frame
 MAX_COORDINATE = 1e4  # likewise [m]; float32 still distinguishes millimetres there
 MAX_SPEED = 10.0  # likewise [m/s]
+AROUND = 1.0
+"""Half of the side of a square around a start in which some ground must be known [m]."""
 
 _LENGTHS = {"position": 3, "yaw": 0, "velocity": 3, "goal": 2}  # 0: a plain number
 _BOUNDS = {
@@ -85,7 +87,8 @@ def require_on_terrain(path: str | Path, queries: Sequence[Query], terrain: Heig
     """Refuse queries that start off the map, under the ground or far above it.
 
     A start over a hole of the map, or one that is merely invalid, is no mistake: its guide path is
-    one invalid configuration. A goal may lie anywhere.
+    one invalid configuration. A goal may lie anywhere. A start with no ground at all around it is
+    refused: the map knows nothing there.
 
     Args:
         path: file of the queries, for messages.
@@ -105,6 +108,11 @@ def require_on_terrain(path: str | Path, queries: Sequence[Query], terrain: Heig
                 f"{where}, off the map, which spans x in [{x_min:g}, {x_max:g}] and y in"
                 f" [{y_min:g}, {y_max:g}] m"
             )
+        if not _has_ground_around(terrain, (x, y)):
+            raise InputError(
+                f"{where}, and all cells of the map within {AROUND:g} m of there are missing: start"
+                " where some are known"
+            )
         if z <= height:  # never true over a hole, whose height is NaN
             raise InputError(
                 f"{where} with its root at {z:g} m, under the ground, which is at {height:g} m"
@@ -115,3 +123,14 @@ def require_on_terrain(path: str | Path, queries: Sequence[Query], terrain: Heig
                 f"{where} with its root at {z:g} m, more than {MAX_ABOVE_GROUND:g} m above the"
                 f" ground, which is at {height:g} m there; a root walks about a metre above ground"
             )
+
+
+def _has_ground_around(terrain: HeightMap, place: tuple[float, float]) -> bool:
+    """Return whether any cell of a square around a place has ground."""
+    cell = [(at - low) / terrain.resolution for at, low in zip(place, terrain.origin, strict=True)]
+    reach = AROUND / terrain.resolution
+    columns, rows = (
+        slice(max(0, math.ceil(each - reach)), max(0, math.floor(each + reach) + 1))
+        for each in cell
+    )
+    return bool(is_ground(terrain.heights[rows, columns]).any())

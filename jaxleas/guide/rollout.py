@@ -43,7 +43,9 @@ def roll_out(
             f" of shape {waypoints.shape} and {steps} steps"
         )
     map_index = jnp.asarray(trips.map_index, jnp.int32)
-    course = Course(trips.atlas, map_index, waypoints, jnp.float32(radius), env, steps)
+    course = Course(
+        trips.atlas, map_index, waypoints, jnp.float32(radius), env, steps, trips.sensed
+    )
     start = jax.tree.map(lambda leaf: jnp.asarray(leaf, jnp.float32), trips.start)
     guarded = getattr(method, "guarded", False)
     if getattr(method, "runs_on_host", False):

@@ -4,7 +4,7 @@ from flax import struct
 from jax import Array
 from jaxtyping import Bool, Float, Int
 
-from jaxleas.terrain import Atlas
+from jaxleas.terrain import Atlas, SensedAtlas
 from jaxleas.types import RootMotion
 
 
@@ -18,12 +18,14 @@ class Trips:
         start: root motion of each robot at its start.
         waypoints: points to reach one after another, the goal last [m]: x, y in the world, and the
             root's height wanted there.
+        sensed: maps as the robots and their guard see them; None: they see the terrain itself.
     """
 
     atlas: Atlas
     map_index: Int[Array, " N"]
     start: RootMotion
     waypoints: Float[Array, "N W 3"]
+    sensed: SensedAtlas | None = None
 
 
 @struct.dataclass

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -11,6 +12,7 @@ from jaxleas.evaluation import (
     Candidate,
     Contenders,
     Evaluation,
+    MapCells,
     Planning,
     Reporter,
     Suite,
@@ -35,6 +37,7 @@ from jaxleas.reports.planner_options import planner_names, planner_settings, wor
 from jaxleas.reports.scene_pictures import draw_side_by_side
 from jaxleas.reports.side_by_side import side_by_side as table_of
 from jaxleas.reports.table import plain_table
+from jaxleas.terrain import NoiseConfig, noise_of
 from jaxleas.types import InputError
 
 
@@ -57,6 +60,7 @@ def evaluate(
     pictures: Path | None = None,
     surrogate: Path | None = None,
     threshold: float | None = None,
+    noise: Sequence[str] | None = None,
     allow: Allow = (),
 ) -> Evaluation:
     """Judge a policy on terrains it was never trained on, and print the table.
@@ -92,6 +96,9 @@ def evaluate(
             they end early, as stopped. The result is kept in --json only.
         threshold: probability of success, as the surrogate foresees it, below which a walk is
             refused: the risk dial.
+        noise: what is wrong with the maps that policy and guard see, such as white=0.02
+            missing=0.02: the settings of terrain.noise; walks are judged on the true terrain. The
+            result is kept in --json only.
         allow: conditions of your own under which the policy was trained, so that they end walks as
             well; by default only R* and C do. The result is kept in --json only.
 
@@ -115,14 +122,21 @@ def evaluate(
         raise InputError(f"--pictures {pictures} is a file; give a folder, new or there already")
     if processes is not None and processes < 1:
         raise InputError(f"--processes is {processes}; give 1 or more")
+    sensed = noise_of(noise)
+    if sensed is not None and side_by_side:
+        raise InputError(
+            "--noise judges one policy by the conditions: leave out --planners, --methods,"
+            " --policies and --pictures, and take another suite than thesis"
+        )
     refusal = load_refusal(surrogate, threshold, names)
     candidate = load_candidate(run, refusal, allow)
     if candidate.note:
         print(candidate.note)
     chosen = suited(chosen, candidate.env.robot)
-    folder = Path(run) if Path(run).is_dir() and candidate.terms.are_standard else None
+    kept = candidate.terms.are_standard and sensed is None
+    folder = Path(run) if Path(run).is_dir() and kept else None
     if not side_by_side:
-        return _evaluate_alone(candidate, chosen, baseline, folder, json)
+        return _evaluate_alone(candidate, chosen, baseline, sensed, _Kept(folder, json))
     robot = candidate.env.config.robot
     for note in dict.fromkeys(filter(None, (each.note_for(robot) for each in settings.values()))):
         print(note)
@@ -140,18 +154,41 @@ def evaluate(
     return evaluation
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """Where an evaluation is kept: a run folder, a file of its own, both or neither."""
+
+    folder: Path | None
+    json: Path | None
+
+
+def _cells_in_words(cells: MapCells) -> str:
+    return (
+        f"of the ground's cells in the maps {100 * cells.missing:.1f} % were missing:"
+        f" {100 * cells.filled:.1f} % were filled, {100 * cells.unknown:.1f} % stayed unknown"
+    )
+
+
 def _evaluate_alone(
-    candidate: Candidate, suite: Suite, baseline: bool, folder: Path | None, json: Path | None
+    candidate: Candidate,
+    suite: Suite,
+    baseline: bool,
+    noise: NoiseConfig | None,
+    kept: "_Kept",
 ) -> Evaluation:
     """Judge a policy by the conditions; print the table, and keep it where that is wanted."""
     with Reporter() as reporter:
-        evaluation = examine(candidate, suite, baseline=baseline, progress=reporter.say)
+        evaluation = examine(
+            candidate, suite, baseline=baseline, progress=reporter.say, noise=noise
+        )
     print(plain_table(evaluation))
-    if folder is not None:
-        keep_evaluation(folder, candidate, evaluation)
-    if json is not None:
-        write_evaluation(json, evaluation)
-        print(f"written: {json}")
+    if evaluation.map_cells is not None:
+        print(_cells_in_words(evaluation.map_cells))
+    if kept.folder is not None:
+        keep_evaluation(kept.folder, candidate, evaluation)
+    if kept.json is not None:
+        write_evaluation(kept.json, evaluation)
+        print(f"written: {kept.json}")
     return evaluation
 
 

@@ -81,6 +81,13 @@ from .seeds import EVALUATION_SEED as EVALUATION_SEED
 from .seeds import HELD_OUT_SEED as HELD_OUT_SEED
 from .seeds import MAX_TRAINING_SEED as MAX_TRAINING_SEED
 from .seeds import TUNING_SEED as TUNING_SEED
+from .sensing.config import NoiseConfig as NoiseConfig
+from .sensing.config import noise_of as noise_of
+from .sensing.sensed_atlas import CellCount as CellCount
+from .sensing.sensed_atlas import Lag as Lag
+from .sensing.sensed_atlas import SensedAtlas as SensedAtlas
+from .sensing.sensed_atlas import Terrains as Terrains
+from .sensing.sensed_atlas import sense as sense
 from .shaping import cropped as cropped
 from .tiles import TileKind as TileKind
 from .writers.mjcf import scene_mjcf as scene_mjcf

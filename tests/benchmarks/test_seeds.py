@@ -10,6 +10,7 @@ from benchmarks.seed_rows import rows_of_cells
 from jaxleas.cli_guard import run_guarded
 from jaxleas.configuration import to_yaml
 from jaxleas.evaluation import CellResult, Evaluation, write_evaluation
+from jaxleas.terrain import noise_of
 from jaxleas.training import load_run_config
 
 SMOKE = seeds.ROOT / "configs" / "leas_p1_smoke.yaml"
@@ -127,6 +128,22 @@ def test_rows_are_of_the_worst_cell_of_the_worst_seed(tmp_path):
     assert rows["limits_worst_invalid"].value == 2.0
     assert rows["limits_crossable_worst"].value == 90.0
     assert {row.machine for row in rows.values()} == {"a machine"}
+
+
+def test_transitions_with_noise_have_rows_and_a_file_of_their_own(tmp_path):
+    (tmp_path / "policy.npz").write_bytes(b"policy")
+    (tmp_path / "evaluation").mkdir()
+    noise = noise_of(seeds.NOISE)
+    turned = cell("rim", 0.5, 0.0).model_copy(update={"yaw": 180.0})
+    plain = evaluation(tmp_path, "transitions", cell("rim", 1.0, 0.0))
+    noisy = evaluation(tmp_path, "transitions", cell("rim", 0.95, 0.0), turned)
+    noisy = noisy.model_copy(update={"noise": noise})
+    rows = rows_of_cells(seeds.cells_of([seeds.Trained(0, 1.0, (plain, noisy))]), "a machine")
+    values = {row.name: row.value for row in rows}
+    assert values == {"transitions_worst": 100.0, "noise_0_worst": 95.0, "noise_180_worst": 50.0}
+    for found, counts in ((noisy, True), (plain, False)):  # an older file without noise does not
+        write_evaluation(tmp_path / "evaluation" / f"{seeds.NOISY}.json", found)
+        assert (seeds.kept(tmp_path, seeds.NOISY, 40) is not None) == counts
 
 
 def test_an_evaluation_of_another_policy_or_of_fewer_starts_does_not_count(tmp_path):

@@ -160,3 +160,25 @@ def test_an_unknown_steering_method_gets_the_nearest_and_the_list(files):
     with pytest.raises(InputError, match="'kimo'; perhaps you meant kino; there are leas"):
         rollout(**files, steering="kimo")
     assert not files["out"].exists()
+
+
+@pytest.mark.slow
+def test_paths_with_noise_are_judged_on_the_true_terrain(files, capsys):
+    rollout(**files, noise=["white=0.02", "missing=0.02"], steps=5)
+    assert "of 4 queries" in capsys.readouterr().out
+    walked = read_guide_paths(files["out"])
+    assert walked.paths[0].valid.all()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"noise": ["missing=1"]}, "no height known around the start of query 0"),
+        ({"noise": ["holes=2"]}, "--noise: holes is 2"),
+        ({"noise": ["white=0.1"], "noise_seed": -1}, "--noise-seed is -1"),
+    ],
+)
+def test_impossible_noise_is_refused(files, options, says):
+    with pytest.raises(InputError, match=says):
+        rollout(**files, **options)
+    assert not files["out"].exists()

@@ -100,10 +100,27 @@ def test_starts_over_a_hole_and_goals_anywhere_are_no_mistake():
     heights[:, :20] = np.nan
     terrain = HeightMap(heights, terrain.resolution, terrain.origin)
     queries = [
-        Query((-3.5, 0, 0.95), 0.0, (0, 0, 0), (1, 0)),
+        Query((-2.5, 0, 0.95), 0.0, (0, 0, 0), (1, 0)),
         Query((3.9, 3.9, 1.9), 0.0, (0, 0, 0), (100, 0)),
     ]
     require_on_terrain("q.json", queries, terrain)
+
+
+@pytest.mark.parametrize(("missing", "refused"), [(1.05, True), (0.9, False)])
+def test_starts_with_all_cells_missing_around_them_are_refused(missing, refused):
+    terrain = flat_map()
+    heights = terrain.heights.copy()
+    x, y = (
+        terrain.origin[axis] + terrain.resolution * np.arange(heights.shape[1]) for axis in (0, 1)
+    )
+    heights[np.ix_(np.abs(y - 1.0) < missing, np.abs(x) < missing)] = np.nan
+    terrain = HeightMap(heights, terrain.resolution, terrain.origin)
+    query = Query((0.0, 1.0, 0.95), 0.0, (0, 0, 0), (1, 0))
+    if refused:
+        with pytest.raises(InputError, match=r"query 0 starts .* all cells of the map within 1 m"):
+            require_on_terrain("q.json", [query], terrain)
+    else:
+        require_on_terrain("q.json", [query], terrain)
 
 
 def test_guide_paths_survive_a_file(tmp_path):

@@ -2,6 +2,7 @@ import shutil
 
 import pytest
 
+from jaxleas.envs.steering import GuardConfig
 from jaxleas.evaluation.examination import (
     evaluation_file,
     keep_evaluation,
@@ -11,6 +12,7 @@ from jaxleas.evaluation.examination import (
 from jaxleas.evaluation.progress import Reporter
 from jaxleas.evaluation.result_file import read_evaluation
 from jaxleas.reports.commands import evaluate, report
+from jaxleas.terrain import NoiseConfig
 from jaxleas.training.policy import write_policy
 from jaxleas.types import InputError
 from tests.evaluation.conftest import random_policy
@@ -112,3 +114,34 @@ def test_progress_is_one_line_in_a_terminal_and_silence_elsewhere(monkeypatch):
             reporter.say("one")
         assert ("one" in stream.text) == live
         assert "\n" not in stream.text
+
+
+def test_noise_is_recorded_counted_and_kept_out_of_the_run_folder(run, tmp_path, capsys):
+    words = ["white=0.02", "missing=0.05", "fill=0.04"]
+    evaluation = evaluate(
+        run, suite="hole", starts=2, baseline=False, noise=words, json=tmp_path / "out.json"
+    )
+    assert read_evaluation(tmp_path / "out.json") == evaluation
+    assert not evaluation_file(run, "hole").exists()
+    assert evaluation.noise == NoiseConfig(white=0.02, missing=0.05, fill=0.04)
+    assert evaluation.guard == GuardConfig()
+    cells = evaluation.map_cells
+    assert cells is not None
+    assert cells.missing == pytest.approx(0.05, abs=0.01)
+    assert cells.filled + cells.unknown == pytest.approx(cells.missing, abs=2e-6)
+    assert 0.0 < cells.unknown < cells.filled
+    assert "of the ground's cells in the maps 5." in capsys.readouterr().out
+    with pytest.raises(InputError, match="no height known around any start of 'hole'"):
+        evaluate(run, suite="hole", starts=2, baseline=False, noise=["missing=1"])
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"noise": ["white=3"]}, "--noise: white is 3, but it should be less than or equal"),
+        ({"noise": ["delay=1"], "planners": ["mip"]}, "leave out --planners"),
+    ],
+)
+def test_impossible_noise_is_refused_before_anything_is_loaded(options, says, tmp_path):
+    with pytest.raises(InputError, match=says):
+        evaluate(tmp_path / "nothing", suite="hole", **options)

@@ -1,3 +1,4 @@
+from .config import GuardConfig as GuardConfig
 from .config import MotionLimits as MotionLimits
 from .config import RewardWeights as RewardWeights
 from .config import SteeringConfig as SteeringConfig
@@ -22,6 +23,7 @@ from .state import Route as Route
 from .state import SeenResult as SeenResult
 from .state import SteeringResult as SteeringResult
 from .state import SteeringState as SteeringState
+from .state import lag_between as lag_between
 from .task import Steering as Steering
 from .terrain_config import TerrainConfig as TerrainConfig
 from .world import World as World

@@ -49,7 +49,7 @@ class BraxSteering(Env):
     def step(self, state: Any, action: jax.Array) -> Any:
         """Advance one time step; `done` is set where the episode failed and where it is cut."""
         after, result = self.steering.step(
-            self.world.atlas, self._weights, state.pipeline_state, action
+            self.world.atlas, self._weights, state.pipeline_state, action, self.world.seen
         )
         truncation = result.truncated.astype(jnp.float32)
         info = state.info | {"truncation": truncation, "margin": result.margin}

@@ -24,13 +24,14 @@ from jaxleas.envs.steering.reward import RewardParams, reward
 from jaxleas.envs.steering.sight import Sight, sampled_points
 from jaxleas.envs.steering.state import (
     GOALS,
+    Past,
     Route,
     SeenResult,
     SteeringResult,
     SteeringState,
 )
 from jaxleas.robots import load_robot
-from jaxleas.terrain import Atlas
+from jaxleas.terrain import Atlas, SensedAtlas, Terrains
 from jaxleas.types import RootMotion
 from jaxleas.xla import compute_once
 
@@ -53,6 +54,7 @@ class SteeringEnv:
         guard: guard that watches over a policy's roll-outs; None: there is none. Training is not
             guarded.
         sight: what a robot sees.
+        delay: number of time steps by which robots see their maps late.
     """
 
     action_size = ACTION_SIZE
@@ -64,6 +66,7 @@ class SteeringEnv:
         foresight: Foresight | None = None,
         allow: Collection[str] = (),
         spare: float = 0.0,
+        delay: int = 0,
     ):
         """Prepare the task.
 
@@ -75,11 +78,12 @@ class SteeringEnv:
                 one that the configuration names.
             allow: user's own code that may be run, as MODULE:CLASS; those of `config.conditions`.
             spare: room that a valid configuration leaves (`TerrainConfig.spare`) [m].
+            delay: number of time steps by which maps are late (`NoiseConfig.delay`).
 
         Raises:
             InputError: a condition that the configuration names cannot be made.
         """
-        self.config = config
+        self.config, self.delay = config, delay
         self.layout = layout_named(config.observation)
         self.robot = load_robot(config.robot)
         self.height_range = (config.height_low, config.height_high)
@@ -111,7 +115,7 @@ class SteeringEnv:
         return self.endings.foresight
 
     def local_heights(
-        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion
+        self, atlas: Terrains, map_index: Int[Array, "*batch"], motion: RootMotion
     ) -> Float[Array, "*batch points"]:
         """Return the local terrain: heights at `points_in_root` relative to the root [m]."""
         return atlas.heights_around(map_index, motion.position, motion.yaw, self.points_in_root)
@@ -131,8 +135,10 @@ class SteeringEnv:
         """Return the observation of a robot that seeks `goal` on this local terrain."""
         return self.sight.observe(heights_in_root, motion, goal)
 
-    def look(self, atlas: Atlas, state: SteeringState) -> Float[Array, "*batch size"]:
+    def look(self, atlas: Terrains, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return the robots' observation: as `observe` on their local terrain, in one pass."""
+        if self.delay and isinstance(atlas, SensedAtlas):
+            atlas = atlas.late(state.past.lag(state.motion))
         return self.sight.look(atlas, state.plan.map_index, state.motion, self.goal(state))
 
     def start(self, motion: RootMotion, route: Route, memory: Any = ()) -> SteeringState:
@@ -144,8 +150,9 @@ class SteeringEnv:
             memory: memory that the foresight's `begin` returned; empty without foresight.
         """
         zero = jnp.zeros_like(route.map_index)
+        past = Past.of(motion, self.delay) if self.delay else ()
         return SteeringState(
-            motion, route, goal_index=zero, goal_age=zero, step=zero, memory=memory
+            motion, route, goal_index=zero, goal_age=zero, step=zero, memory=memory, past=past
         )
 
     def goal(self, state: SteeringState) -> Float[Array, "*batch 2"]:
@@ -158,10 +165,15 @@ class SteeringEnv:
         params: RewardParams,
         state: SteeringState,
         action: Float[Array, "*batch 4"],
+        seen: Terrains | None = None,
     ) -> tuple[SteeringState, SeenResult]:
-        """Advance one time step and look: `advance`, then `look`, with their arguments."""
+        """Advance one time step and look: `advance`, then `look`, with their arguments.
+
+        The terrain is seen as it is, unless `seen` says how.
+        """
         after, result = self.advance(atlas, params, state, action)
-        return after, SeenResult(**vars(result), observation=self.look(atlas, after))
+        observation = self.look(atlas if seen is None else seen, after)
+        return after, SeenResult(**vars(result), observation=observation)
 
     def advance(
         self,
@@ -201,6 +213,7 @@ class SteeringEnv:
             goal_age=jnp.where(replaced, 0, age),
             step=state.step + 1,
             memory=memory,
+            past=state.past.then(state.motion) if self.delay else (),
         )
         return after, SteeringResult(
             reward=gained,

@@ -30,10 +30,10 @@ from jaxleas.envs.steering.config import MotionLimits, SteeringConfig
 from jaxleas.envs.steering.spare import points_with_spare, with_larger_trunk
 from jaxleas.geometry import squared_length
 from jaxleas.robots import Robot
-from jaxleas.terrain import Atlas
+from jaxleas.terrain import Terrains
 from jaxleas.types import RootMotion
 
-MarginsOnMap = Callable[[Atlas, Array, RootMotion], Array]
+MarginsOnMap = Callable[[Terrains, Array, RootMotion], Array]
 """A function from terrains, the index of each robot's terrain and motions to two margins each [m]:
 of the conditions, and of the conditions with room to spare."""
 
@@ -57,12 +57,16 @@ class Guard:
     margins: MarginsOnMap
 
     def __call__(
-        self, atlas: Atlas, map_index: Int[Array, "*batch"], motion: RootMotion, asked: RootMotion
+        self,
+        atlas: Terrains,
+        map_index: Int[Array, "*batch"],
+        motion: RootMotion,
+        asked: RootMotion,
     ) -> RootMotion:
         """Return the motion that is asked for, or one that stays valid.
 
         Args:
-            atlas: height maps of the terrains.
+            atlas: height maps of the terrains, as the robots see them.
             map_index: index of each robot's terrain.
             motion: motion of the root now.
             asked: motion one time step later, if the command is obeyed.
@@ -78,7 +82,7 @@ class Guard:
 
     def can_stop(
         self,
-        atlas: Atlas,
+        atlas: Terrains,
         map_index: Int[Array, "*batch"],
         room: Float[Array, "*batch"],
         motion: RootMotion,
@@ -133,7 +137,7 @@ def guard_of(config: SteeringConfig, robot: Robot, sampled: Points) -> Guard:
     points = union_of_points([each.points_in_root for each in both])
     valid, spared = (read_from(points, each) for each in both)
 
-    def margins(atlas: Atlas, map_index: Array, motion: RootMotion) -> Array:
+    def margins(atlas: Terrains, map_index: Array, motion: RootMotion) -> Array:
         def judge(heights: Array) -> Array:
             return jnp.stack([valid(heights, motion), spared(heights, motion)], axis=-1)
 

@@ -12,7 +12,7 @@ from jaxleas.envs.steering.layout import MOTION_SIZE, ObservationLayout, layout_
 from jaxleas.envs.steering.observation import seen_motion, write_observation
 from jaxleas.envs.steering.surface_count import surface_count
 from jaxleas.robots import Robot
-from jaxleas.terrain import Atlas
+from jaxleas.terrain import Terrains
 from jaxleas.types import RootMotion
 
 
@@ -82,7 +82,7 @@ class Sight:
 
     def look(
         self,
-        atlas: Atlas,
+        atlas: Terrains,
         map_index: Int[Array, "*batch"],
         motion: RootMotion,
         goal: Float[Array, "*batch 2"],

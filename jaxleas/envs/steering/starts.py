@@ -89,7 +89,7 @@ def begin(
     """
     pool_key, take_key = keys
     state, _ = take(pool_of(draw_starts(env, world, pool_key, of)), take_key, count)
-    return state, env.look(world.atlas, state)
+    return state, env.look(world.seen, state)
 
 
 def _draw_motion(

@@ -2,11 +2,14 @@
 
 from typing import Any
 
+import jax.numpy as jnp
 from flax import struct
 from jax import Array
 from jaxtyping import Float, Int
 
 from jaxleas.envs import StepResult
+from jaxleas.geometry import wrap_angle
+from jaxleas.terrain import Lag
 from jaxleas.types import RootMotion
 
 GOALS = 4  # goals drawn ahead for an episode: more than its steps can use up
@@ -35,6 +38,43 @@ Plan = Route
 
 
 @struct.dataclass
+class Past:
+    """Where the root was in the last steps, the oldest first.
+
+    Attributes:
+        position: position of the root [m].
+        yaw: heading [rad].
+    """
+
+    position: Float[Array, "*batch steps 3"]
+    yaw: Float[Array, "*batch steps"]
+
+    @classmethod
+    def of(cls, motion: RootMotion, steps: int) -> "Past":
+        """Return the past of a root that has stood where it is."""
+        return cls(
+            jnp.repeat(motion.position[..., None, :], steps, axis=-2),
+            jnp.repeat(motion.yaw[..., None], steps, axis=-1),
+        )
+
+    def then(self, motion: RootMotion) -> "Past":
+        """Return the past one step later, `motion` being that before the step."""
+        return Past(
+            jnp.concatenate([self.position[..., 1:, :], motion.position[..., None, :]], axis=-2),
+            jnp.concatenate([self.yaw[..., 1:], motion.yaw[..., None]], axis=-1),
+        )
+
+    def lag(self, motion: RootMotion) -> Lag:
+        """Return where the root was at the oldest step, from where it is now."""
+        return lag_between(motion.position, motion.yaw, self.position[..., 0, :], self.yaw[..., 0])
+
+
+def lag_between(position: Array, yaw: Array, position_then: Array, yaw_then: Array) -> Lag:
+    """Return where roots were [m, rad], from where they are now."""
+    return Lag(position_then - position, wrap_angle(yaw_then - yaw))
+
+
+@struct.dataclass
 class SteeringState:
     """One episode in progress.
 
@@ -45,6 +85,8 @@ class SteeringState:
         goal_age: number of steps since that goal was set.
         step: number of steps since the episode began.
         memory: memory of the environment's foresight; empty without one.
+        past: where the root was in the last steps, the oldest first, where maps are late; else
+            empty.
     """
 
     motion: RootMotion
@@ -53,6 +95,7 @@ class SteeringState:
     goal_age: Int[Array, "*batch"]
     step: Int[Array, "*batch"]
     memory: Any = ()
+    past: Any = ()
 
 
 @struct.dataclass

@@ -17,7 +17,7 @@ from jaxleas.envs.steering.reward import RewardParams
 from jaxleas.envs.steering.starts import draw_starts
 from jaxleas.envs.steering.state import SteeringResult, SteeringState
 from jaxleas.envs.steering.terrain_config import TerrainConfig
-from jaxleas.envs.steering.world import KINDS, OwnMaps, World, make_world
+from jaxleas.envs.steering.world import KINDS, OwnMaps, World, as_sensed, make_world
 from jaxleas.terrain import generate_arena, read_own_terrain
 
 NOT_CROSSED = ("flat", "obstacles", "cliff", "void")
@@ -57,7 +57,8 @@ class Steering(Task):
             allow: user's own code that may be run, as MODULE:CLASS.
         """
         super().__init__(config, worlds or TerrainConfig())
-        self.env = SteeringEnv(config, condition, foresight, allow, self.worlds.spare)
+        spare, delay = self.worlds.spare, self.worlds.noise.delay
+        self.env = SteeringEnv(config, condition, foresight, allow, spare, delay)
 
     @classmethod
     def make(cls, config: Any, worlds: Any, allow: Collection[str] = ()) -> Self:
@@ -103,7 +104,10 @@ class Steering(Task):
                 shares |= dict.fromkeys((*NOT_CROSSED, *STOPS), 0.0)
         arenas = [generate_arena(generator, seed) for seed in seeds]
         files = None if examined else self._own_maps
-        return make_world(arenas, terrain.resolution, shares, files)
+        world = make_world(arenas, terrain.resolution, shares, files)
+        if terrain.noise.is_none:
+            return world
+        return as_sensed(world, terrain.noise, jax.random.key(seeds[0]))
 
     def draw_starts(
         self, world: World, key: Key[Array, ""], count: int, examined: bool = False
@@ -137,7 +141,7 @@ class Steering(Task):
 
     def look(self, world: World, state: SteeringState) -> Float[Array, "*batch size"]:
         """Return the robots' observation of terrain, motion and goal."""
-        return self.env.look(world.atlas, state)
+        return self.env.look(world.seen, state)
 
     def examination(self, held_out: Any) -> Examination:
         """Return the examination: links to cross, and those to stop at if the terrain says so."""

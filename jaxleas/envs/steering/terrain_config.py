@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from jaxleas.configuration import Fraction, NonNegative, Strict
 from jaxleas.envs import WorldsConfig
 from jaxleas.terrain import Entry as TerrainEntry
-from jaxleas.terrain import GeneratorConfig
+from jaxleas.terrain import GeneratorConfig, NoiseConfig
 from jaxleas.terrain import pinned as pinned_files
 
 
@@ -57,6 +57,7 @@ class TerrainConfig(WorldsConfig):
     """Room that a valid configuration leaves in training and its examination [m]: the trunk counts
     as this much larger to each side, and the square under the root as this much smaller. A policy
     so keeps valid where polygons are asked, not a map with cells of some centimetres."""
+    noise: NoiseConfig = NoiseConfig()
     files: tuple[TerrainEntry, ...] = ()
     """The user's own terrain files to train on besides the generator's arenas: paths, or
     `{file: PATH, up: y, scale: 0.001}` with what a file does not state itself. They are used for

@@ -8,12 +8,23 @@ import jax.numpy as jnp
 import numpy as np
 from flax import struct
 from jax import Array
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, Key
 
 from jaxleas.envs.steering.own_terrain import OwnTerrain, make_own_terrain
 from jaxleas.envs.steering.terrain_config import LinkShares
 from jaxleas.robots import Robot
-from jaxleas.terrain import Arena, Atlas, HeightMap, Link, make_atlas, rasterise
+from jaxleas.terrain import (
+    Arena,
+    Atlas,
+    HeightMap,
+    Link,
+    NoiseConfig,
+    SensedAtlas,
+    Terrains,
+    make_atlas,
+    rasterise,
+    sense,
+)
 from jaxleas.types import InputError
 
 DEAD_ENDS = ("cliff", "void")  # kinds of links whose goal cannot be reached
@@ -40,6 +51,7 @@ class World:
         cumulative_share: share of the starts that fall on each link and those before it; it ends
             at 1.
         own: places to start from on terrain files; None: there are no such files.
+        sensed: maps as the robots see them; None: they see the terrain itself.
     """
 
     atlas: Atlas
@@ -52,6 +64,12 @@ class World:
     crossable: Bool[Array, " links"]
     cumulative_share: Float[Array, " links"]
     own: OwnTerrain | None = None
+    sensed: SensedAtlas | None = None
+
+    @property
+    def seen(self) -> Terrains:
+        """What the robots see of the terrain."""
+        return self.atlas if self.sensed is None else self.sensed
 
 
 @dataclass(frozen=True)
@@ -118,6 +136,26 @@ def make_world(
         cumulative_share=_cumulative([link.kind for _, link in links], shares),
         own=own,
     )
+
+
+def as_sensed(world: World, noise: NoiseConfig, key: Key[Array, ""]) -> World:
+    """Return a world whose terrain robots see through sensors; it is the same otherwise.
+
+    Args:
+        world: terrains and tasks.
+        noise: what is wrong with the maps that robots see.
+        key: random key, consumed here.
+
+    Raises:
+        InputError: no height of any map is known.
+    """
+    sensed, count = sense(world.atlas, noise, key)
+    if float(count.unknown) >= 1.0:
+        raise InputError(
+            "terrain.noise leaves no height known around any start: lower missing or holes, or"
+            " raise fill"
+        )
+    return world.replace(sensed=sensed)  # type: ignore[attr-defined]
 
 
 def _require_room(arenas: Sequence[HeightMap], files: Sequence[tuple[str, HeightMap]]) -> None:

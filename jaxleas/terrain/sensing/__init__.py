@@ -1,0 +1,1 @@
+"""Maps as sensors give them: noise, missing cells, quantisation, a pose that drifts or is late."""
