@@ -71,6 +71,13 @@ def slower(velocity, bounds):
     return velocity * max(1.0 - loss / speed, 0.0) if speed > 0.0 else velocity
 
 
+def upwards(velocity, rising, bounds):
+    """Return the velocity [m/s] after one time step towards a vertical one."""
+    change = np.array([0.0, 0.0, rising]) - velocity
+    most = bounds["max_acceleration"] * bounds["time_step"]
+    return velocity + change * min(1.0, most / max(np.linalg.norm(change), 1e-12))
+
+
 def turned(yaw):
     """Return the matrix that turns points in rows by an angle [rad]."""
     return np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
@@ -99,8 +106,10 @@ def walk(session, terrain, start, goal, steps):
         position = position + velocity * bounds["time_step"]
         faster = velocity + to_world @ command[:3] * bounds["time_step"]
         faster /= max(1.0, np.linalg.norm(faster) / bounds["max_speed"])
-        # What the guard does not let pass is tried without the turn; at last the root brakes.
-        tried = [(faster, yaw + command[3] * bounds["time_step"]), (faster, yaw)]
+        # What the guard does not let pass is tried without the turn, then upwards or downwards
+        # alone; at last the root brakes.
+        upright = upwards(velocity, faster[2], bounds)
+        tried = [(faster, yaw + command[3] * bounds["time_step"]), (faster, yaw), (upright, yaw)]
         if guard:
             room = min(margins(guard, terrain, path[-1], yaw)[1], 0.0)
             tried = [one for one in tried if can_stop(guard, room, bounds, terrain, position, *one)]

@@ -124,6 +124,43 @@ def test_where_only_the_turn_would_fail_the_robot_goes_on_without_it():
     np.testing.assert_array_equal(kept.yaw, now.yaw)
 
 
+def test_a_robot_that_is_too_low_to_go_ahead_rises_as_asked_and_then_goes():
+    """Beyond x = 0 roots must be higher than 1.03 m; the command asks for ahead and up."""
+
+    def high_beyond(atlas, map_index, motion):
+        x, z = motion.position[..., 0], motion.position[..., 2]
+        return twice(jnp.where(x > 0.0, z - 1.03, 1.0))
+
+    guard, motion = Guard(LIMITS, high_beyond), motion_of([[0.0, 0.0, 1.0]], [[0.0] * 3], [0.2])
+    action = jnp.asarray([[1.0, 0.0, 0.7, 0.5]])
+    motions = walk(guard, None, jnp.zeros(1, jnp.int32), motion, jnp.repeat(action[None], 30, 0))
+    x, z = np.asarray(motions.position[:, 0, 0]), np.asarray(motions.position[:, 0, 2])
+    assert x[-1] > 0.1
+    assert (z[x > 0.0] >= 1.03).all()
+    assert z[(x == 0.0).sum() - 1] > 1.02
+
+
+def test_whatever_the_guard_lets_pass_keeps_the_limits_of_motion():
+    random = np.random.default_rng(3)
+    count = 300
+    velocity = random.normal(size=(count, 3))
+    speed = random.uniform(0.0, LIMITS.max_speed, (count, 1))
+    velocity *= speed / np.linalg.norm(velocity, axis=1, keepdims=True)
+    now = motion_of(np.zeros((count, 3)), velocity, np.zeros(count))
+    actions = jnp.asarray(random.uniform(-1.0, 1.0, (count, 4)), jnp.float32)
+    asked = integrate(now, scale_action(actions, LIMITS), LIMITS)
+
+    def level_only(atlas, map_index, motion):
+        return twice(0.02 - jnp.abs(motion.velocity[..., 0]))
+
+    kept = Guard(LIMITS, level_only)(None, jnp.zeros(count, jnp.int32), now, asked)
+    change = np.linalg.norm(np.asarray(kept.velocity) - velocity, axis=1)
+    assert change.max() <= LIMITS.max_acceleration * LIMITS.time_step + 1e-6
+    assert np.linalg.norm(kept.velocity, axis=1).max() <= LIMITS.max_speed + 1e-6
+    differs = np.any(np.asarray(kept.velocity) != np.asarray(asked.velocity), axis=1)
+    assert 0.2 < differs.mean() < 1.0
+
+
 KINDS = ("ledge_down", "gap", "posts", "thin_wall")
 ROBOTS, STEPS = 64, 120
 

@@ -56,8 +56,8 @@ class GuardConfig(Strict):
 
     enabled: bool = False
     """Whether a command is obeyed only where the robot could still brake to rest, valid all the
-    way; otherwise it does not turn, or brakes. Training is not guarded: what is never punished is
-    not learned."""
+    way; otherwise it does not turn, or only rises or sinks, or brakes. Training is not guarded:
+    what is never punished is not learned."""
     spare: Annotated[float, Field(ge=0.0, le=0.08)] = 0.03
     """Room that it leaves [m]: the trunk counts as this much larger to each side, and the square
     under the root as this much smaller. Maps have cells of some centimetres."""

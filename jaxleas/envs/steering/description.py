@@ -65,8 +65,9 @@ def describe_guard(config: SteeringConfig) -> dict[str, Any]:
         " ground",
         "rule": "a command is obeyed if, where the root arrives and wherever it would be if it then"
         " braked to rest by max_acceleration, the margin of valid is 0 or more, and that of spared"
-        " 0 or more or no less than it is now; else the same without its turn rate; else the root"
-        " brakes",
+        " 0 or more or no less than it is now; else the same without its turn rate; else the"
+        " velocity changes towards (0, 0, that commanded upwards) by at most max_acceleration,"
+        " without a turn; else the root brakes",
     }
 
 

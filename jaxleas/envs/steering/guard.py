@@ -2,7 +2,8 @@
 
 A robot that can brake to rest along valid configurations has a way to stay valid whatever it is
 asked to do next: braking. The guard obeys a command if that is still so afterwards, and otherwise
-leaves out the turn or, at last, brakes. By induction a robot that could brake at its start stays
+leaves out the turn; or stands, but rises or sinks as asked, so that a step that seems too high
+can be met higher up; or, at last, brakes. By induction a robot that could brake at its start stays
 valid on any map, whatever its policy has learned; where it goes is the policy's business alone.
 
 Besides, it leaves some room, because a map has cells. A robot that begins with less may go wherever
@@ -28,7 +29,7 @@ from jaxleas.conditions import (
 )
 from jaxleas.envs.steering.config import MotionLimits, SteeringConfig
 from jaxleas.envs.steering.spare import points_with_spare, with_larger_trunk
-from jaxleas.geometry import squared_length
+from jaxleas.geometry import bound_norm, squared_length
 from jaxleas.robots import Robot
 from jaxleas.terrain import Terrains
 from jaxleas.types import RootMotion
@@ -72,13 +73,15 @@ class Guard:
             asked: motion one time step later, if the command is obeyed.
         """
         straight = RootMotion(asked.position, asked.velocity, motion.yaw)
+        upright = RootMotion(asked.position, self.upright(motion, asked), motion.yaw)
         stopping = RootMotion(asked.position, self.slower(motion.velocity), motion.yaw)
         room = jnp.minimum(self.margins(atlas, map_index, motion)[..., 1], 0.0)
-        tried = jax.tree.map(lambda *each: jnp.stack(each), asked, straight)
+        tried = jax.tree.map(lambda *each: jnp.stack(each), asked, straight, upright)
         shape = tried.yaw.shape
         maps, rooms = (jnp.broadcast_to(each[None], shape) for each in (map_index, room))
         fine = self.can_stop(atlas, maps, rooms, tried)
-        return _chosen(fine[0], asked, _chosen(fine[1], straight, stopping))
+        standing = _chosen(fine[2], upright, stopping)
+        return _chosen(fine[0], asked, _chosen(fine[1], straight, standing))
 
     def can_stop(
         self,
@@ -113,6 +116,13 @@ class Guard:
 
         none = jnp.zeros(motion.yaw.shape, bool)
         return jax.lax.while_loop(goes_on, step, (motion, ~none, none))[1]
+
+    def upright(self, motion: RootMotion, asked: RootMotion) -> Float[Array, "*batch 3"]:
+        """Return the velocity one time step later, towards the asked one's vertical part [m/s]."""
+        wanted = asked.velocity * jnp.asarray([0.0, 0.0, 1.0]).reshape(
+            (1,) * (asked.velocity.ndim - 1) + (3,)
+        )
+        return motion.velocity + bound_norm(wanted - motion.velocity, self._loss)
 
     def slower(self, velocity: Float[Array, "*batch 3"]) -> Float[Array, "*batch 3"]:
         """Return the velocity one time step later, braking as hard as possible [m/s]."""

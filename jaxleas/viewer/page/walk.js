@@ -68,14 +68,27 @@ export async function step(ort, session, task, terrain, motion, goal) {
   return guarded(task, terrain, motion, integrate(task, motion, Array.from(command.data)));
 }
 
-/** The motion that is asked for, without its turn, or braking: the first that can stop in time. */
+/**
+ * The motion that is asked for, without its turn, upwards or downwards alone, or braking: the first
+ * that can stop in time.
+ */
 export function guarded(task, terrain, motion, asked) {
   if (!task.guard) return asked;
   const room = Math.min(0, margin(task, terrain, motion, "spared"));
   if (canStop(task, terrain, room, asked)) return asked;
   const straight = { ...asked, yaw: motion.yaw };
   if (canStop(task, terrain, room, straight)) return straight;
+  const upright = { ...straight, velocity: upwards(task, motion.velocity, asked.velocity[2]) };
+  if (canStop(task, terrain, room, upright)) return upright;
   return { ...straight, velocity: slower(task, motion.velocity) };
+}
+
+/** The velocity one time step later, towards a vertical one. */
+function upwards(task, velocity, rising) {
+  const { max_acceleration: most, time_step: step } = task.command;
+  const change = [-velocity[0], -velocity[1], rising - velocity[2]];
+  const share = Math.min(1, (most * step) / Math.max(Math.hypot(...change), 1e-12));
+  return velocity.map((each, axis) => each + share * change[axis]);
 }
 
 /** Whether the root is valid here and wherever it would be while it braked to rest. */
