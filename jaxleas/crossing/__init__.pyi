@@ -7,6 +7,9 @@ from .courses import COURSES as COURSES
 from .courses import make_course as make_course
 from .crossing import cross as cross
 from .first_pair import first_pair as first_pair
+from .followed_plan import FOLLOWED as FOLLOWED
+from .followed_plan import Followed as Followed
+from .followed_plan import Tracking as Tracking
 from .foothold_scores import FootholdLog as FootholdLog
 from .foothold_scores import foothold_tracking_error as foothold_tracking_error
 from .foothold_scores import landing_errors as landing_errors
@@ -23,9 +26,6 @@ from .seen_map import MapErrors as MapErrors
 from .tally import Tally as Tally
 from .tally import tally as tally
 from .tally import together as together
-from .tracking import FOLLOWED as FOLLOWED
-from .tracking import Followed as Followed
-from .tracking import Tracking as Tracking
 from .tracking import track as track
 from .tracking_in_words import NotFollowedError as NotFollowedError
 from .walk_log import WalkDescription as WalkDescription

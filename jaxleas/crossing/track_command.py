@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxleas.controllers import TICK, PhaseTracker, Ticked, TrackerSettings, Walk
+from jaxleas.crossing.followed_plan import Tracking
 from jaxleas.crossing.plan_start import start_of
 from jaxleas.crossing.terrain_files import scene_of
-from jaxleas.crossing.tracking import Tracking
 from jaxleas.crossing.tracking import track as follow
 from jaxleas.crossing.tracking_in_words import NotFollowedError, tracking_in_words
 from jaxleas.crossing.walk_log import (

@@ -1,28 +1,18 @@
 """Robots that follow gait plans in physics, until the end of the plan, a fall, or a time."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, get_args
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from jaxleas.controllers import FALLS, TICK, UPRIGHT, PhaseTracker, Walk, Walking, falls
 from jaxleas.crossing.crossing import Observer
-from jaxleas.crossing.foothold_scores import (
-    FootholdLog,
-    foothold_tracking_error,
-    landing_errors,
-    tracked_footholds,
-)
+from jaxleas.crossing.followed_plan import Followed, Tracking
+from jaxleas.crossing.foothold_scores import FootholdLog, landing_errors, tracked_footholds
 from jaxleas.footsteps import TOUCHES
 from jaxleas.physics import BodyState
 from jaxleas.types import InputError
 
-Followed = Literal["followed", "astray", "fell", "time", "interrupted"]
-"""It stands at the end of its plan; it stands elsewhere; it fell; its time was over before; a
-person stopped it."""
-FOLLOWED: tuple[Followed, ...] = get_args(Followed)
 EVERY = 5
 """Ticks between two instants that are kept, and at which ends are looked for: 20 ms."""
 RESTS = 0.5
@@ -33,40 +23,15 @@ was followed [m]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Tracking:
-    """What became of one robot that follows a plan.
-
-    Attributes:
-        outcome: how it ended.
-        time: time of the end [s].
-        support: number of the plan's support in which it ended.
-        cause: what showed a fall, one of `jaxleas.controllers.FALLS`; "" otherwise.
-        com: last position of the centre of mass [m].
-        base_errors: distance of the centre of mass from its place at each instant [m].
-        tracked: whether each new foothold of the plan was tracked.
-        landing_errors: horizontal distances of landed feet from their new footholds [m].
-        log: what was planned of its feet, and measured.
-    """
+class _End:
+    """How a robot's walk ended: what `Tracking` says, and the number of instants until then."""
 
     outcome: Followed
     time: float
     support: int
-    cause: str
     com: Float[np.ndarray, "3"]
-    base_errors: Float[np.ndarray, " T"]
-    tracked: Bool[np.ndarray, " F"]
-    landing_errors: Float[np.ndarray, " G"]
-    log: FootholdLog
-
-    @property
-    def fter(self) -> float:
-        """Mean distance of standing feet from their footholds: `foothold_tracking_error` [m]."""
-        return foothold_tracking_error(self.log)
-
-    @property
-    def fts(self) -> float:
-        """Share of the plan's new footholds that were tracked; 1 of a plan without any."""
-        return float(self.tracked.mean()) if len(self.tracked) else 1.0
+    cause: str = ""
+    instants: int | None = None
 
 
 @dataclass(eq=False)
@@ -101,7 +66,7 @@ def track(
         raise InputError(
             f"tracking needs a PhaseTracker with a plan for each of {len(start)} robots"
         )
-    kept, ended = _Kept(), dict[int, tuple[Followed, float, int, str, int]]()
+    kept, ended = _Kept(), dict[int, _End]()
     walking, still = walk.begin(start), np.zeros((len(start), 3))
     last: Followed = "time"
     try:
@@ -118,7 +83,7 @@ def track(
     except KeyboardInterrupt:
         last = "interrupted"
     return [
-        _tracking(index, tracker, kept, walking, ended.get(index) or _now(last, walking, index))
+        _tracking(index, tracker, kept, ended.get(index) or _now(last, walking, index))
         for index in range(len(start))
     ]
 
@@ -135,7 +100,7 @@ def _keep(kept: _Kept, tracker: PhaseTracker, walking: Walking) -> None:
 
 
 def _end(
-    ended: dict[int, tuple[Followed, float, int, str, int]],
+    ended: dict[int, _End],
     walk: Walk,
     tracker: PhaseTracker,
     walking: Walking,
@@ -146,44 +111,42 @@ def _end(
     support = tracker.tracks.at(walking.memory.time).support
     done = walking.memory.time >= tracker.tracks.ends + RESTS
     goal = tracker.tracks.at(tracker.tracks.ends).com
-    apart = np.hypot(*(walking.sensed.com - goal)[:, :2].T)
+    com = walking.sensed.com
+    apart = np.hypot(*(com - goal)[:, :2].T)
     for index in np.flatnonzero((causes != UPRIGHT) | done).tolist():
         if index in ended:
             continue
         now, number = float(walking.sensed.time[index]), int(support[index])
         if causes[index] != UPRIGHT:
-            ended[index] = "fell", now, number, FALLS[causes[index]], instants
+            ended[index] = _End("fell", now, number, com[index], FALLS[causes[index]], instants)
         else:
             how: Followed = "followed" if apart[index] <= AT_END else "astray"
-            ended[index] = how, now, number, "", instants
+            ended[index] = _End(how, now, number, com[index], "", instants)
 
 
-def _aside(
-    walking: Walking, ended: dict[int, tuple[Followed, float, int, str, int]], start: BodyState
-) -> Walking:
+def _aside(walking: Walking, ended: dict[int, _End], start: BodyState) -> Walking:
     """Put robots that lie back to where they began, with other robots about: they may diverge."""
-    down = np.array([ended.get(index, ("",))[0] == "fell" for index in range(len(start))])
+    down = np.array(
+        [index in ended and ended[index].outcome == "fell" for index in range(len(start))]
+    )
     if down.any() and len(start) > 1:
         return replace(walking, state=walking.state.replaced(down, start))
     return walking
 
 
-def _now(
-    outcome: Followed, walking: Walking, index: int
-) -> tuple[Followed, float, int, str, int | None]:
-    return outcome, float(walking.sensed.time[index]), -1, "", None
+def _now(outcome: Followed, walking: Walking, index: int) -> _End:
+    sensed = walking.sensed
+    return _End(outcome, float(sensed.time[index]), -1, sensed.com[index])
 
 
 def _tracking(
     index: int,
     tracker: PhaseTracker,
     kept: _Kept,
-    walking: Walking,
-    ended: Sequence,
+    end: _End,
 ) -> Tracking:
-    outcome, time, support, cause, instants = ended
     supports, wanted, planned, feet, touching, errors = (
-        np.array([each[index] for each in rows[:instants]])
+        np.array([each[index] for each in rows[: end.instants]])
         for rows in (
             *(kept.supports, kept.stands, kept.planned, kept.feet, kept.touching),
             kept.base_errors,
@@ -193,7 +156,6 @@ def _tracking(
     length = int(tracker.tracks.lengths[index])
     stands = tracker.tracks.stands[index, : length + 1]
     scores = tracked_footholds(log, stands), landing_errors(log, stands)
-    if support < 0:
-        support = int(supports[-1]) if len(supports) else 0
-    com = walking.sensed.com[index]
-    return Tracking(outcome, time, support, cause, com, errors, *scores, log)
+    last = int(supports[-1]) if len(supports) else 0
+    support = last if end.support < 0 else end.support
+    return Tracking(end.outcome, end.time, support, end.cause, end.com, errors, *scores, log)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from jaxleas.controllers import PhaseTracks
+from jaxleas.crossing.followed_plan import Tracking
 from jaxleas.crossing.in_words import CAUSES
-from jaxleas.crossing.tracking import Tracking
 from jaxleas.types import JaxleasError
 
 
