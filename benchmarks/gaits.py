@@ -1,6 +1,7 @@
 """Gaits planned on fields that nothing was tuned on: `python -m benchmarks.gaits [PLANNER]`.
 
-PLANNER is `search`, or a policy (policy.npz). --starts N draws N starts for each kind of field,
+PLANNER is `search`, or a policy (policy.npz); --draws 0 has its own answers alone, whose rows are
+policy_alone_... instead of planner_.... --starts N draws N starts for each kind of field,
 with goals 2 to 5 m away and 150 phases at most; --confirmed N has HiGHS rebuild the programs of N
 plans of each kind. Replaces the planner's rows in benchmarks/results/gaits.json; with --held-out it
 prints only, from fields for tuning.
@@ -28,7 +29,9 @@ from jaxleas.envs.gait_planning import (
     Shares,
 )
 from jaxleas.gaits import (
+    NO_RETRIES,
     Gait,
+    Retries,
     footing_of,
     search_crawls,
     taken,
@@ -74,7 +77,7 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def _rows(given: argparse.Namespace) -> Iterator[Row]:
-    title = "search" if given.planner == "search" else "planner"
+    title = _title(given)
     seconds, confirmed, programs = [], 0, 0
     for kind in FIELD_KINDS:
         judged, config = _judge(given, kind)
@@ -90,6 +93,12 @@ def _rows(given: argparse.Namespace) -> Iterator[Row]:
         share = 100.0 * confirmed / programs
         yield Row(f"{title}_confirmed", "%", [share], None, 100.0, "higher")
     yield Row(f"{title}_seconds", "s", seconds)
+
+
+def _title(given: argparse.Namespace) -> str:
+    if given.planner == "search":
+        return "search"
+    return "planner" if given.draws else "policy_alone"
 
 
 def _judge(given: argparse.Namespace, kind: str) -> tuple[Judged, GaitPlanningConfig]:
@@ -112,14 +121,15 @@ def _judge(given: argparse.Namespace, kind: str) -> tuple[Judged, GaitPlanningCo
         if policy is None:
             gaits += search_crawls(config, footing, some)
         else:
-            gaits += _walked(policy, ground, some)
+            gaits += _walked(policy, ground, some, given.draws)
         print(f"{kind}: {len(gaits)} of {len(valid)}", file=sys.stderr, flush=True)
     return Judged(gaits, (time.perf_counter() - begin) / len(valid)), config
 
 
-def _walked(policy: Policy, ground: Ground, starts: PlanningState) -> list[Gait]:
+def _walked(policy: Policy, ground: Ground, starts: PlanningState, draws: int) -> list[Gait]:
+    retries = Retries(draws) if draws else NO_RETRIES
     one = [taken(starts, slice(row, row + 1)) for row in range(len(starts.step))]
-    return [walk_policy(policy, ground, start, PHASES).gait for start in one]
+    return [walk_policy(policy, ground, start, PHASES, retries).gait for start in one]
 
 
 def _margins(config: GaitPlanningConfig, gait: Gait) -> np.ndarray:
@@ -132,6 +142,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.gaits", description=__doc__)
     parser.add_argument("planner", nargs="?", default="search")
     parser.add_argument("--starts", type=int, default=100)
+    parser.add_argument("--draws", type=int, default=Retries.draws)
     parser.add_argument("--confirmed", type=int, default=20)
     parser.add_argument("--held-out", action="store_true")
     return parser

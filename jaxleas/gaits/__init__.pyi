@@ -12,6 +12,8 @@ from .gait_plan import plan_of as plan_of
 from .on_terrain import OnTerrain as OnTerrain
 from .plan_file import read_gait_plan as read_gait_plan
 from .plan_file import write_gait_plan as write_gait_plan
+from .policy_way import NO_RETRIES as NO_RETRIES
+from .policy_way import Retries as Retries
 from .policy_way import walk_policy as walk_policy
 from .tracks import quickened as quickened
 from .tracks import track_of as track_of

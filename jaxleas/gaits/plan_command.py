@@ -11,7 +11,7 @@ from jaxleas.gaits.crawl_settings import CrawlSettings
 from jaxleas.gaits.gait_plan import GaitPlan, plan_of
 from jaxleas.gaits.on_terrain import OnTerrain
 from jaxleas.gaits.plan_file import write_gait_plan
-from jaxleas.gaits.policy_way import walk_policy
+from jaxleas.gaits.policy_way import NO_RETRIES, Retries, walk_policy
 from jaxleas.runs import Progress
 from jaxleas.terrain import READING, Reading, import_terrain, with_cells
 from jaxleas.training import read_policy
@@ -41,6 +41,7 @@ def plan(
     start: str = "0,0,0",
     width: int = 4,
     phases: int = 150,
+    draws: int = Retries.draws,
     reading: Reading = READING,
 ) -> GaitPlan:
     """Plan a quadruped's support phases to a goal, and certify the plan.
@@ -53,11 +54,15 @@ def plan(
         start: place and heading to begin at: X,Y or X,Y,YAW [m, rad].
         width: number of states that the search keeps after each phase.
         phases: largest number of transitions.
+        draws: number of phases drawn from a policy where its own next phase is refused; with 0 the
+            plan ends there.
         reading: what the terrain file does not state itself.
     """
     for name, value in (("--width", width), ("--phases", phases)):
         if value < 1:
             raise InputError(f"{name} {value}: give 1 or more")
+    if draws < 0:
+        raise InputError(f"--draws {draws}: give 0 or more")
     if out.suffix != ".json":
         raise InputError(f"{out}: the name of a plan must end in .json")
     begin, end = parse_pose(start, "--start"), parse_pose(goal, "--goal")
@@ -75,7 +80,9 @@ def plan(
             )[0]
         found = plan_of(config, place.in_its_frame(gait), SEARCH)
     else:
-        way = walk_policy(policy, place.footing.ground, state, phases)
+        way = walk_policy(
+            policy, place.footing.ground, state, phases, Retries(draws) if draws else NO_RETRIES
+        )
         found = plan_of(config, place.in_its_frame(way.gait), planner)
         cause = f" ({way.cause})" if way.cause else ""
     certificate = certify_gait(found, height_map)
