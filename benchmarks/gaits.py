@@ -28,6 +28,7 @@ from jaxleas.envs.gait_planning import (
     PlanningState,
     Shares,
 )
+from jaxleas.files import policy_path
 from jaxleas.gaits import (
     NO_RETRIES,
     Gait,
@@ -102,9 +103,9 @@ def _title(given: argparse.Namespace) -> str:
 
 
 def _judge(given: argparse.Namespace, kind: str) -> tuple[Judged, GaitPlanningConfig]:
-    policy = (
-        None if given.planner == "search" else read_policy(given.planner, of=GaitPlanningConfig)
-    )
+    policy = None
+    if given.planner != "search":
+        policy = read_policy(policy_path(given.planner), of=GaitPlanningConfig)
     config = GaitPlanningConfig() if policy is None else policy.config
     shares = {name: float(name == kind) for name in FIELD_KINDS}
     task = GaitPlanning(config, GaitWorldsConfig(shares=Shares(**shares)))

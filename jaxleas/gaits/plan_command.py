@@ -4,6 +4,7 @@ from math import atan2
 from pathlib import Path
 
 from jaxleas.envs.gait_planning import GaitPlanningConfig
+from jaxleas.files import policy_path
 from jaxleas.footsteps import Goal, parse_pose
 from jaxleas.gaits.certifying import certify_gait
 from jaxleas.gaits.crawl_search import search_crawls
@@ -47,7 +48,8 @@ def plan(
     """Plan a quadruped's support phases to a goal, and certify the plan.
 
     Args:
-        planner: policy of gait planning (policy.npz), or `search`, which needs none.
+        planner: policy of gait planning (policy.npz, or pretrained:gaits), or `search`, which needs
+            none.
         terrain: height map, scene, mesh, image, table or bag; docs/files.md lists all kinds.
         goal: place to reach: X,Y [m].
         out: file for the plan (.json).
@@ -66,7 +68,7 @@ def plan(
     if out.suffix != ".json":
         raise InputError(f"{out}: the name of a plan must end in .json")
     begin, end = parse_pose(start, "--start"), parse_pose(goal, "--goal")
-    policy = None if planner == SEARCH else read_policy(planner, of=GaitPlanningConfig)
+    policy = None if planner == SEARCH else read_policy(policy_path(planner), of=GaitPlanningConfig)
     config = GaitPlanningConfig() if policy is None else policy.config
     height_map = import_terrain(terrain, with_cells(terrain, reading, CELL))
     place = OnTerrain(config, height_map)

@@ -43,8 +43,8 @@ def tracked_margins(
     config = GaitPlanningConfig(robot=_roomier(plan.robot), instants=plan.program.instants)
     where = Discretisation(instants=plan.program.instants)
     origin = before.com.astype(np.float64)
-    here = (_from(each, origin) for each in (before, after))
-    found = solve_transitions(transitions_of(config, *here, times), where)
+    transitions = transitions_of(config, _from(before, origin), _from(after, origin), times)
+    found = solve_transitions(transitions, where)
     return TrackedMargins(found.margin, found.free_point + origin)
 
 

@@ -88,3 +88,15 @@ def test_coarse_cells_are_refused(command, tmp_path):
 def test_a_policy_of_another_task_is_refused(command):
     with pytest.raises(InputError, match="policy of the task steering"):
         cli.run([*command[:2], "pretrained/leas_p1.npz", *command[3:]])
+
+
+@pytest.mark.slow
+def test_the_shipped_policy_crosses_a_gap_and_its_plan_is_certified(command, tmp_path, capsys):
+    pytest.importorskip("numba")
+    write_height_map(tmp_path / "gap.npz", with_gap(0.16, length=4.0))
+    asked = ["--terrain", str(tmp_path / "gap.npz"), "--start", "0,2,0", "--goal", "2.2,2"]
+    cli.run([*command[:2], "pretrained:gaits", *command[3:], *asked])
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    assert plan["ending"] == "reached"
+    assert plan["certificate"]["holds"]
+    assert "pretrained:gaits" in plan["planner"]
