@@ -4,7 +4,7 @@ Plans of the search on fields that nothing was tuned on are followed by the phas
 one kind in one world. An episode lasts 90 s at most, and succeeds if the robot then stands within
 0.5 m of the goal, without having fallen. --episodes N draws N for each kind, of those starts to
 which the search finds a plan. --robot heavy, long or short has robots follow them that differ from
-what the tracker is told (table III of DeepGait). Replaces the tracker's rows in
+what the tracker assumes (table III of DeepGait). Replaces the tracker's rows in
 benchmarks/results/gaits.json; with --held-out it prints only, from fields for tuning.
 """
 
@@ -19,6 +19,7 @@ import numpy as np
 
 from benchmarks.contacts.rows import Row
 from benchmarks.field_worlds import place_of, world_of
+from benchmarks.gait_starts import starts_on
 from benchmarks.gaits import OUT
 from benchmarks.measurements import others, this_machine, write_measurements
 from benchmarks.varied_robots import VARIED, Varied, varied_robot
@@ -33,7 +34,7 @@ from jaxleas.controllers import (
     standing_with,
 )
 from jaxleas.crossing import Tracking, track
-from jaxleas.envs.gait_planning import GaitPlanning, GaitPlanningConfig, GaitWorldsConfig, Shares
+from jaxleas.envs.gait_planning import GaitPlanningConfig
 from jaxleas.gaits import (
     GaitPlan,
     eased,
@@ -41,12 +42,11 @@ from jaxleas.gaits import (
     plan_of,
     quickened,
     search_crawls,
-    taken,
     track_of,
 )
 from jaxleas.physics import DEFAULT_BODY, load_body, make_physics
 from jaxleas.runs import Progress
-from jaxleas.terrain import EVALUATION_SEED, FIELD_KINDS, TUNING_SEED, HeightMap
+from jaxleas.terrain import FIELD_KINDS, HeightMap
 from jaxleas.types import is_ground
 
 SUCCESS = {"flat": 99.5, "gaps": 97.0, "stones": 97.0, "stairs": 92.0}
@@ -79,7 +79,7 @@ PUBLISHED: dict[str, dict[str, tuple[float, float, float]]] = {
 }
 """Success [%], FTS and FTER [m] of Tsounis et al. 2020, table III; all but FTER are this project's
 targets, too, where no other stands above."""
-FIELDS, SECONDS, NEAR = 20, 90.0, 0.5
+SECONDS, NEAR = 90.0, 0.5
 INSIDE, SHOWN = 0.45, 50
 """Distance from the goal at which plans end: a robot that is 1 cm off is still near [m]; ticks
 between two updates of the progress."""
@@ -130,13 +130,10 @@ def _rows(
 def _plans(given: argparse.Namespace, kind: str) -> Planned:
     """Return fields by number, and plans to goals 2 to 5 m away, with the field of each."""
     config = GaitPlanningConfig(goal_radius=INSIDE)
-    shares = {name: float(name == kind) for name in FIELD_KINDS}
-    task = GaitPlanning(config, GaitWorldsConfig(shares=Shares(**shares)))
-    first = (TUNING_SEED if given.held_out else EVALUATION_SEED) + FIELDS * FIELD_KINDS.index(kind)
-    first += given.shift
-    ground = task.make_world(range(first, first + FIELDS), True)
-    drawn = task.draw_starts(ground, np.random.default_rng(first), 8 * given.episodes, True)
-    starts = taken(drawn.state, np.flatnonzero(drawn.valid)[: given.episodes + given.spare])
+    ground, starts = starts_on(
+        *(config, kind, 8 * given.episodes, given.episodes + given.spare),
+        *(given.held_out, given.shift),
+    )
     gaits = search_crawls(config, footing_of(config, ground), starts)
     ways = list(zip(starts.field.tolist(), gaits, strict=True))
     reached = [(number, gait) for number, gait in ways if gait.ending == "reached"]

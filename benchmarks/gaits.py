@@ -17,20 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.contacts.rows import Row
+from benchmarks.gait_starts import starts_on
 from benchmarks.measurements import others, this_machine, write_measurements
 from jaxleas.cli_guard import run_guarded
 from jaxleas.dynamics import Discretisation, margins_by_definition
 from jaxleas.envs.gait_planning import (
-    GaitPlanning,
     GaitPlanningConfig,
-    GaitWorldsConfig,
     Ground,
     PlanningState,
-    Shares,
 )
 from jaxleas.files import policy_path
 from jaxleas.gaits import (
-    NO_RETRIES,
     Gait,
     Retries,
     footing_of,
@@ -39,11 +36,11 @@ from jaxleas.gaits import (
     transitions_along,
     walk_policy,
 )
-from jaxleas.terrain import EVALUATION_SEED, FIELD_KINDS, TUNING_SEED
+from jaxleas.terrain import FIELD_KINDS
 from jaxleas.training import Policy, read_policy
 
 OUT = Path(__file__).resolve().parents[1] / "benchmarks/results/gaits.json"
-FIELDS, AT_ONCE, PHASES = 20, 25, 150
+AT_ONCE, PHASES = 25, 150
 TARGET = {"random_stairs": 95.0, "temple": 95.0}
 """This project's own targets [%]; 98 elsewhere."""
 
@@ -107,30 +104,24 @@ def _judge(given: argparse.Namespace, kind: str) -> tuple[Judged, GaitPlanningCo
     if given.planner != "search":
         policy = read_policy(policy_path(given.planner), of=GaitPlanningConfig)
     config = GaitPlanningConfig() if policy is None else policy.config
-    shares = {name: float(name == kind) for name in FIELD_KINDS}
-    task = GaitPlanning(config, GaitWorldsConfig(shares=Shares(**shares)))
-    first = (TUNING_SEED if given.held_out else EVALUATION_SEED) + FIELDS * FIELD_KINDS.index(kind)
-    ground = task.make_world(range(first, first + FIELDS), True)
-    drawn = task.draw_starts(ground, np.random.default_rng(first), 4 * given.starts, True)
-    valid = np.flatnonzero(drawn.valid)[: given.starts]
-    starts = taken(drawn.state, valid)
+    ground, starts = starts_on(config, kind, 4 * given.starts, given.starts, given.held_out)
+    count = len(starts.step)
     begin = time.perf_counter()
     footing = footing_of(config, ground)
     gaits: list[Gait] = []
-    for place in range(0, len(valid), AT_ONCE):
+    for place in range(0, count, AT_ONCE):
         some = taken(starts, slice(place, place + AT_ONCE))
         if policy is None:
             gaits += search_crawls(config, footing, some)
         else:
             gaits += _walked(policy, ground, some, given.draws)
-        print(f"{kind}: {len(gaits)} of {len(valid)}", file=sys.stderr, flush=True)
-    return Judged(gaits, (time.perf_counter() - begin) / len(valid)), config
+        print(f"{kind}: {len(gaits)} of {count}", file=sys.stderr, flush=True)
+    return Judged(gaits, (time.perf_counter() - begin) / count), config
 
 
 def _walked(policy: Policy, ground: Ground, starts: PlanningState, draws: int) -> list[Gait]:
-    retries = Retries(draws) if draws else NO_RETRIES
     one = [taken(starts, slice(row, row + 1)) for row in range(len(starts.step))]
-    return [walk_policy(policy, ground, start, PHASES, retries).gait for start in one]
+    return [walk_policy(policy, ground, start, PHASES, Retries(draws)).gait for start in one]
 
 
 def _margins(config: GaitPlanningConfig, gait: Gait) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Robots that differ from what their controller is told: heavier, longer and shorter shanks."""
+"""Robots that differ from what their controller assumes: heavier, longer and shorter shanks."""
 
 import tempfile
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class VariedRobot:
 
     Attributes:
         name: name of the variation.
-        body: robot as it is, which its controller is not told.
+        body: robot as it is, which its controller does not know.
     """
 
     name: Varied

@@ -4,12 +4,10 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import Float
-
-from jaxleas.controllers import TICK, PhaseTracker, Ticked, TrackerSettings, Walk
+from jaxleas.controllers import TICK, PhaseTracker, TrackerSettings, Walk
 from jaxleas.crossing.followed_plan import Tracking
 from jaxleas.crossing.plan_start import start_of
+from jaxleas.crossing.shown_walk import ShownWalk
 from jaxleas.crossing.terrain_files import scene_of
 from jaxleas.crossing.tracking import track as follow
 from jaxleas.crossing.tracking_in_words import NotFollowedError, tracking_in_words
@@ -29,8 +27,6 @@ CELL = 0.02
 """Edge of a cell of polygons where none is stated [m]."""
 SPARE = 10.0
 """Time beyond the plan's that a robot gets where no limit is stated [s]."""
-_SHOWN = 25
-"""Ticks between two updates of the progress."""
 
 
 def track(
@@ -74,7 +70,7 @@ def track(
     logger = WalkLogger(walk)
     limit = seconds or float(tracks.ends[0]) + SPARE
     with Progress(round((float(tracks.ends[0]) + settings.settles) / TICK)) as progress:
-        (made,) = follow(walk, start, limit, _Shown(progress, logger))
+        (made,) = follow(walk, start, limit, ShownWalk(progress, logger))
     if made.outcome == "followed":
         print(tracking_in_words(made, tracks))
     if log is not None:
@@ -90,17 +86,3 @@ def track(
     if made.outcome != "followed":
         raise NotFollowedError(made, tracks)
     return made
-
-
-class _Shown:
-    """Shows the progress along a plan, and logs it."""
-
-    def __init__(self, progress: Progress, logger: WalkLogger) -> None:
-        self._progress, self._logger, self._ticks = progress, logger, 0
-
-    def __call__(self, ticked: Ticked, command: Float[np.ndarray, "N 3"]) -> None:
-        self._logger(ticked, command)
-        self._ticks += 1
-        if self._ticks % _SHOWN == 0:
-            x, y, _ = ticked.walking.sensed.com[0]
-            self._progress.update(self._ticks, {"at": f"{x:.2f}, {y:.2f}"})

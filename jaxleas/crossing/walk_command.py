@@ -4,16 +4,12 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import Float
-
 from jaxleas.configuration import Allow
 from jaxleas.controllers import (
     DEFAULT_CONTROLLER,
     TICK,
     ControllerName,
     Switching,
-    Ticked,
     Walk,
     find_controller,
 )
@@ -24,6 +20,7 @@ from jaxleas.crossing.ground_start import measured_at_start, standing_on
 from jaxleas.crossing.in_turn import InTurn
 from jaxleas.crossing.in_words import NotReachedError, in_words
 from jaxleas.crossing.seen_map import MapErrors
+from jaxleas.crossing.shown_walk import ShownWalk
 from jaxleas.crossing.tally import tally
 from jaxleas.crossing.terrain_files import scene_of
 from jaxleas.crossing.walk_log import (
@@ -134,7 +131,7 @@ def walk(
         commander = BlindCommander(walker.identity, goals, blind)
     logger = WalkLogger(physics)
     with Progress(round(settings.seconds / TICK)) as progress:
-        seen = _Shown(progress, logger)
+        seen = ShownWalk(progress, logger)
         (crossing,) = cross(physics, stands, [commander], settings.seconds, seen)
     counts = tally(crossing, SceneEdges.of(scene), walker.identity)
     if crossing.outcome == "reached":
@@ -157,24 +154,6 @@ def walk(
         print(f"log written to {log}")
     if crossing.outcome != "reached":
         raise NotReachedError(crossing, goals[-1])
-
-
-class _Shown:
-    """Shows the progress of a walk, and logs it."""
-
-    def __init__(self, progress: Progress, logger: WalkLogger) -> None:
-        self._progress, self._logger, self._ticks = progress, logger, 0
-
-    def __call__(self, ticked: Ticked, command: Float[np.ndarray, "N 3"]) -> None:
-        self._logger(ticked, command)
-        self._ticks += 1
-        if self._ticks % _SHOWN == 0:
-            x, y, _ = ticked.walking.sensed.com[0]
-            self._progress.update(self._ticks, {"at": f"{x:.2f}, {y:.2f}"})
-
-
-_SHOWN = 25
-"""Ticks between two updates of the progress."""
 
 
 def _map_of(terrain: Path, reading: Reading) -> HeightMap:

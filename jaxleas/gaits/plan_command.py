@@ -12,7 +12,7 @@ from jaxleas.gaits.crawl_settings import CrawlSettings
 from jaxleas.gaits.gait_plan import GaitPlan, plan_of
 from jaxleas.gaits.on_terrain import OnTerrain
 from jaxleas.gaits.plan_file import write_gait_plan
-from jaxleas.gaits.policy_way import NO_RETRIES, Retries, walk_policy
+from jaxleas.gaits.policy_way import Retries, walk_policy
 from jaxleas.runs import Progress
 from jaxleas.terrain import READING, Reading, import_terrain, with_cells
 from jaxleas.training import read_policy
@@ -82,9 +82,7 @@ def plan(
             )[0]
         found = plan_of(config, place.in_its_frame(gait), SEARCH)
     else:
-        way = walk_policy(
-            policy, place.footing.ground, state, phases, Retries(draws) if draws else NO_RETRIES
-        )
+        way = walk_policy(policy, place.footing.ground, state, phases, Retries(draws))
         found = plan_of(config, place.in_its_frame(way.gait), planner)
         cause = f" ({way.cause})" if way.cause else ""
     certificate = certify_gait(found, height_map)

@@ -39,7 +39,7 @@ class Retries:
         draws: number of phases drawn from the policy's distribution, of which the first accepted
             one is taken.
         back: how often in a row the way goes back where no draw is accepted: one phase, then two,
-            and so on, until it gets farther than before.
+            and so on, until it gets farther than before; never without draws.
         seed: seed of the draws.
     """
 
@@ -48,7 +48,7 @@ class Retries:
     seed: int = 0
 
 
-NO_RETRIES = Retries(0, 0)
+NO_RETRIES = Retries(draws=0)
 
 
 class PolicyWay(NamedTuple):
@@ -93,7 +93,7 @@ def walk_policy(
         step = walker.step_from(states[-1], own=not setbacks)
         if step is None:
             setbacks += 1
-            if setbacks > retries.back:
+            if not retries.draws or setbacks > retries.back:
                 ending = "refused"
                 break
             kept = max(0, len(commands) - setbacks)
@@ -141,7 +141,9 @@ class _Walker:
                     self._policy.config, self._ground, taken(many, first), actions[first]
                 )
                 return _Step(taken(after, first), command, bool(result.reached[first[0]]))
-            self.cause = self.cause if not own or len(actions) > 1 else _cause_of(result)
+            if own:
+                self.cause = _cause_of(result)
+                own = False  # what follows are draws
         return None
 
     def _proposed(

@@ -50,7 +50,9 @@ def test_a_file_extends_what_is_shipped(here: Path) -> None:
 
 @pytest.mark.parametrize("name", ["leas_p9", "", "../configs/leas_p1", "leas_p1.npz", "a\0b"])
 def test_a_wrong_name_lists_the_right_ones(name: str) -> None:
-    with pytest.raises(InputError, match="comes with jaxleas; give one of gaits, leas_p1, leas_p2_mip"):
+    with pytest.raises(
+        InputError, match="comes with jaxleas; give one of gaits, leas_p1, leas_p2_mip"
+    ):
         policy_path(f"pretrained:{name}")
 
 
